@@ -1,0 +1,215 @@
+#!/bin/sh
+# Makes lineao_shaders.h (GLSL lines and SPIR-V words of every pass, from lineao.h's shared text and shaders/) and
+# dist/lineao_all.h (everything in one file). The same inputs give the same bytes: no clock, no locale, no paths.
+#   ./amalgamate.sh            write both
+#   ./amalgamate.sh --check    prove that the committed lineao_shaders.h is current and that dist/ compiles
+# Needs cc, awk, glslangValidator.
+set -eu
+LC_ALL=C
+export LC_ALL
+cd "$(dirname "$0")"
+
+SHADERS="fullscreen import_depth export_depth lines level_zero level_up occlusion smooth_x smooth_y shade resolve present"
+HEADERS="lineao.h" # modules follow: sdfvessel.h vesselsurface.h flow4d.h
+
+work=$(mktemp -d)
+trap 'rm -rf "$work"' EXIT INT TERM
+die() {
+    printf 'amalgamate.sh: %s\n' "$*" >&2
+    exit 1
+}
+
+command -v glslangValidator >/dev/null || die "glslangValidator is missing (Debian package glslang-tools)"
+
+# Comments and blank lines go, indentation too: shorter text, the same tokens.
+strip() {
+    awk '{
+        line = $0
+        out = ""
+        while (length(line)) {
+            if (inside) {
+                i = index(line, "*/")
+                if (!i) { line = ""; break }
+                inside = 0
+                line = substr(line, i + 2)
+            } else {
+                i = index(line, "/*")
+                if (!i) { out = out line; line = ""; break }
+                out = out substr(line, 1, i - 1)
+                inside = 1
+                line = substr(line, i + 2)
+            }
+        }
+        sub(/^[ \t]+/, "", out)
+        sub(/[ \t]+$/, "", out)
+        if (length(out)) print out
+    }'
+}
+
+# The shared text of the headers.
+make_shared() {
+    for header in $HEADERS; do
+        awk '/^\/\* [A-Z]+_SHARED_BEGIN \*\//{on = 1; next} /^\/\* [A-Z]+_SHARED_END \*\//{on = 0} on' "$header"
+    done | strip
+}
+
+c_lines() { # C string literals, one a line
+    awk '{gsub(/\\/, "\\\\"); gsub(/"/, "\\\""); printf "    \"%s\\n\",\n", $0}'
+}
+
+# name, stage (VERTEX|FRAGMENT), suffix (vert|frag): words as a C array body into $work/name.suffix.words
+spirv() {
+    {
+        printf '#version 450\n#define LAO_GLSL 1\n#define LAO_PRECISE 1\n#define LAO_%s 1\n' "$2"
+        cat "$work/prologue" "$work/$1.body"
+    } >"$work/$1.$3"
+    glslangValidator -V --target-env vulkan1.2 -g0 -x -o "$work/$1.$3.x" "$work/$1.$3" >"$work/log" ||
+        { cat "$work/log" >&2; die "shaders/$1.glsl does not compile as $2"; }
+    sed 's/0x0*\([0-9a-f]\)/0x\1/g' "$work/$1.$3.x" >"$work/$1.$3.words"
+}
+
+names() { # second and further arguments of a macro: names MACRO file
+    sed -n "s/^$1([0-9]*, *\([^)]*\)).*/\1/p" "$2"
+}
+
+make_shader() { # arrays and the table row of one shader
+    name=$1
+    strip <"shaders/$name.glsl" |
+        awk -v levels="$work/levels" '/^LAO_GENERATED_LEVELS$/ {while ((getline line < levels) > 0) print line; next} {print}' \
+            >"$work/$name.body"
+    has_vertex=$(grep -c '^#ifdef LAO_VERTEX' "$work/$name.body" || true)
+    has_fragment=$(grep -c '^#ifdef LAO_FRAGMENT' "$work/$name.body" || true)
+    printf '\n/* %s */\n#ifdef LINEAO_SHADERS_GLSL\nstatic const char *const lao_lines_%s[] = {\n' "$name" "$name"
+    c_lines <"$work/$name.body"
+    printf '};\n#endif\n#ifdef LINEAO_SHADERS_SPIRV\n'
+    if [ "$has_vertex" -gt 0 ]; then
+        spirv "$name" VERTEX vert
+        printf 'static const uint32_t lao_words_%s_vertex[] = {\n' "$name"
+        cat "$work/$name.vert.words"
+        printf '};\n'
+    fi
+    if [ "$has_fragment" -gt 0 ]; then
+        spirv "$name" FRAGMENT frag
+        printf 'static const uint32_t lao_words_%s_fragment[] = {\n' "$name"
+        cat "$work/$name.frag.words"
+        printf '};\n'
+    fi
+    printf '#endif\n'
+    constants=$(names LAO_CONSTANT "$work/$name.body" | sed 's/^lao_constant_//')
+    textures=$(names LAO_TEX "$work/$name.body" | sed 's/.*, *//')
+    types=$(names LAO_TEX "$work/$name.body" | sed 's/,.*//; s/^.*Buffer$/LAO_TEXTURE_BUFFER/; s/^[a-z]*sampler2D$/LAO_TEXTURE_2D/')
+    [ -z "$constants" ] || { printf 'static const char *const lao_constants_%s[] = {' "$name"; printf '"%s", ' $constants; printf '};\n'; }
+    [ -z "$textures" ] || {
+        printf 'static const char *const lao_textures_%s[] = {' "$name"; printf '"%s", ' $textures; printf '};\n'
+        printf 'static const lao_texture_type lao_types_%s[] = {' "$name"; printf '%s, ' $types; printf '};\n'
+    }
+    list() { [ -z "$2" ] && printf 'NULL' || printf '%s_%s' "$1" "$name"; }
+    count() { set -- $1; printf '%d' $#; }
+    stage() { # vertex|fragment present
+        if [ "$2" -gt 0 ]; then
+            printf '{LAO_GLSL_STAGE(lao_lines_%s) LAO_SPIRV_STAGE(lao_words_%s_%s)}' "$name" "$name" "$1"
+        else
+            printf '{NULL, 0, NULL, 0}'
+        fi
+    }
+    {
+        printf '    {"%s", %s, %s, %s, %s, %s, %s,\n     ' "$name" \
+            "$(list lao_constants "$constants")" "$(count "$constants")" \
+            "$(list lao_textures "$textures")" "$(list lao_types "$textures")" "$(count "$textures")" \
+            "$(names LAO_OUT "$work/$name.body" | wc -l | tr -d ' ')"
+        stage vertex "$has_vertex"
+        printf ',\n     '
+        stage fragment "$has_fragment"
+        printf '},\n'
+    } >>"$work/rows"
+}
+
+make_shaders_header() {
+    : >"$work/rows"
+    { make_shared; "$work/shader_text" settings; strip <shaders/prologue.glsl; } >"$work/prologue"
+    "$work/shader_text" levels | strip >"$work/levels"
+    cat <<'END'
+/* Generated by amalgamate.sh from lineao.h and shaders/. Do not edit: change those and run ./amalgamate.sh. MIT licence.
+   Define LINEAO_SHADERS_GLSL or LINEAO_SHADERS_SPIRV (or both) before including; the other text is left out. */
+/* clang-format off */
+#ifndef LINEAO_SHADERS_H
+#define LINEAO_SHADERS_H
+#include "lineao.h"
+
+#ifdef LINEAO_SHADERS_GLSL
+#define LAO_GLSL_STAGE(lines) lines, (uint32_t)(sizeof lines / sizeof lines[0]),
+#else
+#define LAO_GLSL_STAGE(lines) NULL, 0,
+#endif
+#ifdef LINEAO_SHADERS_SPIRV
+#define LAO_SPIRV_STAGE(words) words, (uint32_t)(sizeof words / sizeof words[0])
+#else
+#define LAO_SPIRV_STAGE(words) NULL, 0
+#endif
+
+#ifdef LINEAO_SHADERS_GLSL
+/* the shared text of lineao.h, the accessors of the settings and the macros: in front of every stage */
+static const char *const lao_shader_prologue[] = {
+END
+    c_lines <"$work/prologue"
+    printf '};\nstatic const uint32_t lao_shader_prologue_count = (uint32_t)(sizeof lao_shader_prologue / sizeof lao_shader_prologue[0]);\n#endif\n'
+    for shader in $SHADERS; do
+        make_shader "$shader"
+    done
+    printf '\nstatic const lao_shader lao_shaders[] = {\n'
+    cat "$work/rows"
+    printf '};\nstatic const uint32_t lao_shader_count = (uint32_t)(sizeof lao_shaders / sizeof lao_shaders[0]);\n\n'
+    printf '#undef LAO_GLSL_STAGE\n#undef LAO_SPIRV_STAGE\n#endif\n'
+}
+
+inlined() { # a file without its includes of our own files
+    printf '/* ==== begin file %s ==== */\n' "$1"
+    sed '/^#include "lineao[a-z_]*\.h"/d' "$1"
+    printf '/* ==== end file %s ==== */\n' "$1"
+}
+
+make_all() {
+    printf '/* lineao in one file. Generated by amalgamate.sh; do not edit. Version %s.\n' \
+        "$(sed -n 's/^#define LAO_VERSION \([0-9]*\).*/\1/p' lineao.h)"
+    printf '   #define LINEAO_IMPLEMENTATION for the core, LINEAO_GL_IMPLEMENTATION and/or LINEAO_VK_IMPLEMENTATION for the backends,\n'
+    printf '   in one C file. LINEAO_VK_IMPLEMENTATION needs vulkan/vulkan_core.h. */\n'
+    printf '#if defined(LINEAO_GL_IMPLEMENTATION) && !defined(LINEAO_SHADERS_GLSL)\n#define LINEAO_SHADERS_GLSL\n#endif\n'
+    printf '#if defined(LINEAO_VK_IMPLEMENTATION) && !defined(LINEAO_SHADERS_SPIRV)\n#define LINEAO_SHADERS_SPIRV\n#endif\n'
+    inlined lineao.h
+    printf '#if defined(LINEAO_GL_IMPLEMENTATION) || defined(LINEAO_VK_IMPLEMENTATION)\n'
+    inlined "$1"
+    printf '#endif\n#ifdef LINEAO_GL_IMPLEMENTATION\n'
+    inlined lineao_gl.c
+    printf '#endif\n#ifdef LINEAO_VK_IMPLEMENTATION\n'
+    inlined lineao_vk.c
+    printf '#endif\n/*\n'
+    cat LICENSE
+    printf '*/\n'
+}
+
+${CC:-cc} -std=c99 -O1 -ffp-contract=off -I. -o "$work/shader_text" tools/shader_text.c -lm
+make_shaders_header >"$work/lineao_shaders.h"
+if [ "${1-}" = --check ]; then
+    cmp -s "$work/lineao_shaders.h" lineao_shaders.h || die "lineao_shaders.h is stale: run ./amalgamate.sh and commit it"
+    make_all lineao_shaders.h >"$work/lineao_all.h"
+    make_all lineao_shaders.h >"$work/again.h"
+    cmp -s "$work/lineao_all.h" "$work/again.h" || die "dist/lineao_all.h differs between two runs"
+    ! grep -q '^#include "lineao' "$work/lineao_all.h" || die "an include of our own is left in dist/lineao_all.h"
+    for pair in "c ${CC:-cc} -std=c99" "c++ ${CXX:-c++} -std=c++11"; do
+        language=${pair%% *}
+        printf '#define LINEAO_IMPLEMENTATION\n#define LINEAO_GL_IMPLEMENTATION\n#define LINEAO_VK_IMPLEMENTATION\n#include "lineao_all.h"\n' |
+            ${pair#* } -Wall -Wextra -Wpedantic -Werror -ffp-contract=off -I"$work" -x "$language" -c - -o "$work/all.o" ||
+            die "dist/lineao_all.h does not compile as $language"
+        if nm -g --defined-only "$work/all.o" | awk '{print $3}' | grep -v '^lao_' | grep -q .; then
+            die "dist/lineao_all.h exports more than lao_ symbols"
+        fi
+    done
+    [ "$(wc -c <lineao_shaders.h)" -lt 1048576 ] || die "lineao_shaders.h is over 1 MB"
+    printf 'lineao_shaders.h is current; dist/lineao_all.h compiles as C99 and C++11\n'
+else
+    cmp -s "$work/lineao_shaders.h" lineao_shaders.h 2>/dev/null || cp "$work/lineao_shaders.h" lineao_shaders.h
+    if [ -f lineao_gl.c ] && [ -f lineao_vk.c ]; then
+        mkdir -p dist
+        make_all lineao_shaders.h >dist/lineao_all.h
+    fi
+fi

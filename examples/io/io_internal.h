@@ -1,0 +1,204 @@
+/* What the readers and writers of examples/io share: memory of one read, bounds-checked bytes, typed views, and the
+ * builder that turns points and arrays into io_lines. Private to examples/io.
+ *
+ * One read = one io_reader. Everything a read allocates hangs on it and is freed together at its end, so that a format's
+ * code returns false as soon as something is wrong, and never frees. */
+#ifndef LINEAO_IO_INTERNAL_H
+#define LINEAO_IO_INTERNAL_H
+
+#include "io.h"
+
+#include <stdio.h>
+
+#if defined(__GNUC__)
+#define IO_PRINTF(text, first) __attribute__((format(printf, text, first)))
+#else
+#define IO_PRINTF(text, first)
+#endif
+
+/* ---- Text and bytes ---------------------------------------------------------------------------------------------- */
+
+typedef struct io_text { /* not terminated, not owned */
+    const char *at;
+    size_t size;
+} io_text;
+
+typedef struct io_cursor { /* at <= size always */
+    const uint8_t *bytes;
+    size_t size;
+    size_t at;
+} io_cursor;
+
+io_text io_text_of(const char *string);
+bool io_text_is(io_text text, const char *word); /* letter case does not matter, ASCII */
+bool io_text_starts(io_text text, const char *word);
+io_text io_text_trim(io_text text); /* without blanks, line ends and NULs at both ends */
+
+/* The next count bytes; NULL, with the cursor unmoved, when fewer are left. */
+const uint8_t *io_take(io_cursor *cursor, size_t count);
+/* The rest of the line without its end ("\n" or "\r\n"), moving behind it; false at the end of the bytes. */
+bool io_take_line(io_cursor *cursor, io_text *line);
+/* The next run of non-blank characters, leaving the cursor right behind it; false when there is none. */
+bool io_take_word(io_cursor *cursor, io_text *word);
+/* 1-based line number of a position, for messages. */
+size_t io_line_number(const io_cursor *cursor, size_t at);
+
+/* Numbers as text, in any locale: decimal, "nan", "inf", "1.#QNAN", "1e-45". False unless the whole text is one. */
+bool io_parse_real(io_text text, double *value);
+bool io_parse_size(io_text text, size_t *value);
+
+/* ---- Typed views of arrays in a file ----------------------------------------------------------------------------- */
+
+typedef enum io_type {
+    IO_NONE, IO_I8, IO_U8, IO_I16, IO_U16, IO_I32, IO_U32, IO_I64, IO_U64, IO_F16, IO_F32, IO_F64
+} io_type;
+
+/* count rows of components values each; row i begins at bytes + i * stride. All rows lie inside the bytes of the file. */
+typedef struct io_view {
+    const uint8_t *bytes;
+    size_t count, stride;
+    uint32_t components;
+    io_type type;
+    bool big; /* big-endian */
+} io_view;
+
+enum { IO_MAX_COMPONENTS = 64 };
+
+/* Names of VTK, VTP, TRX and TCK ("unsigned_char", "Float32", "int64"); IO_NONE when unknown. */
+io_type io_type_named(io_text name);
+size_t io_type_size(io_type type);
+uint16_t io_u16(const uint8_t *bytes, bool big);
+uint32_t io_u32(const uint8_t *bytes, bool big);
+uint64_t io_u64(const uint8_t *bytes, bool big);
+float io_f32(const uint8_t *bytes, bool big);
+double io_view_real(const io_view *view, size_t row, uint32_t component);
+/* The value as an index; false when it is negative, broken or beyond size_t. */
+bool io_view_index(const io_view *view, size_t row, size_t *value);
+/* A view of doubles in memory. */
+io_view io_view_doubles(const double *values, size_t count, uint32_t components);
+
+/* ---- One read ---------------------------------------------------------------------------------------------------- */
+
+typedef struct io_block io_block;
+
+typedef struct io_column { /* an attribute that grows */
+    char *name;
+    uint32_t components;
+    float *data;
+    size_t rows, capacity; /* capacity in floats */
+} io_column;
+
+typedef struct io_columns {
+    io_column *items;
+    size_t count, capacity;
+} io_columns;
+
+typedef struct io_bundle {
+    char *name;
+    uint32_t *lines; /* numbers of lines in the file */
+    size_t count, capacity;
+} io_bundle;
+
+typedef struct io_reader {
+    const io_options *options; /* never NULL */
+    io_error *error;
+    io_block *blocks;
+    size_t allocated, limit; /* bytes */
+    uint64_t step;           /* of progress: 0 unpacking, 1 reading, 2 finishing */
+
+    double *points; /* x y z */
+    uint32_t *point_rows; /* the row of each point in the file's arrays */
+    size_t point_count, point_capacity;
+    uint32_t *line_ends;
+    uint32_t *line_rows;
+    size_t line_count, line_capacity;
+    size_t batch_points, batch_lines; /* where the current batch (VTP piece) begins */
+    size_t line_row_base;             /* added to the line rows of the current batch */
+    io_columns point_columns, line_columns;
+    io_bundle *bundles;
+    size_t bundle_count, bundle_capacity;
+    char **warnings;
+    size_t warning_count, warning_capacity;
+    size_t dropped_points, empty_lines;
+} io_reader;
+
+void io_reader_free(io_reader *reader);
+
+/* Writes the error text and returns false, so that a reader may `return io_fail(...)`. */
+bool io_error_set(io_error *error, const char *format, ...) IO_PRINTF(2, 3);
+#define io_fail(reader, ...) io_error_set((reader)->error, __VA_ARGS__)
+bool io_warn(io_reader *reader, const char *format, ...) IO_PRINTF(2, 3); /* false when memory is short */
+bool io_tick(io_reader *reader, size_t done, size_t total); /* reports progress; false when the user cancels */
+
+/* Zeroed memory for count items, freed with the reader; NULL (error written) when the read's limit is passed. */
+void *io_alloc(io_reader *reader, size_t count, size_t size);
+/* Room for needed items in an array from io_alloc, at least doubling it; the old array stays valid when NULL. */
+void *io_grow(io_reader *reader, void *array, size_t *capacity, size_t needed, size_t size);
+/* A terminated copy that is fit for messages: control characters and broken UTF-8 become '?'. NULL = no memory. */
+char *io_copy_text(io_reader *reader, io_text text);
+
+bool io_read_file(io_reader *reader, const char *path, io_cursor *out);
+bool io_is_gzip(const io_cursor *bytes);
+bool io_gunzip(io_reader *reader, io_cursor *bytes);
+/* Inflates one zlib stream into exactly size bytes at out. */
+bool io_inflate(const uint8_t *bytes, size_t count, uint8_t *out, size_t size);
+
+/* ---- Builder ------------------------------------------------------------------------------------------------------ */
+
+/* Adds a point to the line being built; row is its place in the file's point arrays. Points that are not finite are
+ * dropped and counted. False when memory is short. */
+bool io_add_point(io_reader *reader, const double position[3], size_t row);
+/* Ends the line; row is its number in the file. done of total is for progress. Lines without points vanish. */
+bool io_end_line(io_reader *reader, size_t row, size_t done, size_t total);
+/* Gives every point or line of the batch its values from a view, by row. Views with too few rows or too many
+ * components are left out with a warning. */
+bool io_attach_points(io_reader *reader, io_text name, const io_view *view);
+bool io_attach_lines(io_reader *reader, io_text name, const io_view *view);
+/* Begins the next batch (piece of a file): rows count from 0 again. */
+void io_next_batch(io_reader *reader);
+/* Puts a line (by its row) into a group; the group is made at first use. */
+io_bundle *io_add_bundle(io_reader *reader, io_text name);
+bool io_bundle_add(io_reader *reader, io_bundle *bundle, uint32_t row);
+/* Filters, centres and hands everything over. */
+bool io_finish(io_reader *reader, const char *format, io_lines *out);
+
+/* Cells of a VTK data set: counted = the numbers n i0 .. in-1 follow each other in `index`; otherwise cell i has the
+ * indices from ends[i - 1] (0 for the first) up to ends[i]. */
+typedef struct io_cells {
+    size_t count;
+    io_view index, ends;
+    bool counted;
+} io_cells;
+/* Adds each cell as a line; first_row is the number of the first cell among all cells. */
+bool io_add_cells(io_reader *reader, const io_view *points, const io_cells *cells, size_t first_row);
+
+/* ---- Formats -------------------------------------------------------------------------------------------------------- */
+
+typedef enum io_match { IO_NO, IO_MAYBE, IO_YES } io_match;
+
+io_match io_sniff_trk(const io_cursor *bytes);
+io_match io_sniff_tck(const io_cursor *bytes);
+io_match io_sniff_trx(const io_cursor *bytes);
+io_match io_sniff_tt(const io_cursor *bytes);
+io_match io_sniff_vtk(const io_cursor *bytes);
+io_match io_sniff_vtp(const io_cursor *bytes);
+
+bool io_read_trk(io_reader *reader, io_cursor *bytes);
+bool io_read_tck(io_reader *reader, io_cursor *bytes);
+bool io_read_trx(io_reader *reader, io_cursor *bytes);
+bool io_read_trx_folder(io_reader *reader, const char *path);
+bool io_read_tt(io_reader *reader, io_cursor *bytes);
+bool io_read_vtk(io_reader *reader, io_cursor *bytes);
+bool io_read_vtp(io_reader *reader, io_cursor *bytes);
+
+/* Writers put the whole file into an open stream; the caller checks the stream for errors. */
+bool io_write_trk(FILE *file, const io_lines *lines, io_error *error);
+bool io_write_tck(FILE *file, const io_lines *lines, io_error *error);
+bool io_write_vtp(FILE *file, const io_lines *lines, io_error *error);
+void io_put_u32(FILE *file, uint32_t value); /* little-endian */
+void io_put_u64(FILE *file, uint64_t value);
+void io_put_f32(FILE *file, double value);
+void io_put_f64(FILE *file, double value);
+double io_position(const io_lines *lines, size_t point, unsigned axis); /* absolute */
+
+#endif

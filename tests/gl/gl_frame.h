@@ -1,0 +1,39 @@
+/* A tiny frame through the seam, written by hand so that executors are tested without any effect: all kinds of passes,
+   formats, tests, blends, clears, history, a hole among the outputs, a missing input and a target of the host. */
+#ifndef GL_FRAME_H
+#define GL_FRAME_H
+
+#include "lineao.h"
+
+enum { GL_FRAME_SIZE = 24, GL_FRAME_STEPS = 5, GL_FRAME_SLOTS = 5, GL_FRAME_INSTANCES = 7 };
+
+/* What the core would be: allocator with fault injection, log. */
+typedef struct gl_frame_core {
+    lao_host host;
+    int fail_allocation; /* the n-th fails; 0: none */
+    int allocations, logs;
+    long bytes; /* alive */
+    lao_log_item item;
+    char text[2048];
+} gl_frame_core;
+
+typedef struct gl_frame {
+    lao_plan plan;
+    lao_plan_step steps[GL_FRAME_STEPS];
+    lao_plan_instance instances[GL_FRAME_INSTANCES];
+    lao_plan_slot slots[GL_FRAME_SLOTS];
+    lao_execution execution;
+    lao_draw draw;
+    lao_chunk chunk;
+} gl_frame;
+
+extern const lao_shader *const gl_frame_shaders[GL_FRAME_STEPS];
+
+void gl_frame_core_init(gl_frame_core *core);
+/* The plan for images of this size. */
+void gl_frame_init(gl_frame *frame, uint32_t size);
+/* The line set, in buffers of the backend. */
+lao_result gl_frame_lines_create(gl_frame *frame, const lao_backend *backend, void *self);
+void gl_frame_lines_destroy(gl_frame *frame, const lao_backend *backend, void *self);
+
+#endif
