@@ -560,6 +560,7 @@ typedef struct lao_vk_desc {
     uint32_t queue_family;     /* where the host's command buffers are submitted: graphics */
     void *queue;               /* (Optional) VkQueue for lao_read; externally synchronised by the host */
     uint32_t frames_in_flight; /* frames recorded before the first of them has finished; 0: 2 */
+    uint32_t debug_utils;      /* non-zero: VK_EXT_debug_utils is enabled; passes and objects get names */
 } lao_vk_desc;
 
 /* Writes what it would do as text: for tests and for learning. */
@@ -984,10 +985,12 @@ LAO_FN float lao_acos(float x) {
     LAO_EXACT float s = (1.0f - c) * (1.0f + c);
     return lao_atan2(lao_sqrt(s), c);
 }
-/* x^n, x >= 0, 0 <= n < 1024, by repeated squaring */
+/* x^n, 0 <= x <= 1, 0 <= n < 1024, by repeated squaring; results below 2^-100 are 0, because denormal numbers on the way
+   to them cost a CPU more than all the rest */
 LAO_FN float lao_power(float x, lao_int n) {
+    LAO_EXACT float least = lao_exp2(-100.0f / LAO_F(n > 0 ? n : 1));
     LAO_EXACT float r = 1.0f;
-    LAO_EXACT float b = x;
+    LAO_EXACT float b = x < least ? 0.0f : x;
     lao_int m = n;
     for (lao_int i = 0; i < 10; i = i + 1) {
         if ((m & 1) != 0) {
@@ -1302,17 +1305,17 @@ LAO_FN float lao_depth_reach(float density, lao_uint level, lao_uint levels) {
     LAO_EXACT float r = density * t * t;
     return r;
 }
-/* Eq. 5: 1 below delta 0, 0 beyond reach. slope = 1 / (reach - delta 0), 0 where reach <= delta 0 (a hard step). */
+/* Eq. 5: 1 below delta 0, 0 beyond reach. slope: lao_depth_weight_slope. */
 LAO_FN float lao_depth_weight(float difference, float threshold, float slope) {
-    if (!(slope > 0.0f)) {
-        return difference <= threshold ? 1.0f : 0.0f;
-    }
     LAO_EXACT float t = (difference - threshold) * slope;
     LAO_EXACT float r = 1.0f - lao_hermite(t);
     return r;
 }
+/* 1 / (reach - delta 0); steep enough for a step where reach does not exceed delta 0. */
 LAO_FN float lao_depth_weight_slope(float reach, float threshold) {
-    return reach > threshold ? 1.0f / (reach - threshold) : 0.0f;
+    LAO_EXACT float width = lao_max(reach - threshold, 1.0e-20f);
+    LAO_EXACT float slope = 1.0f / width;
+    return slope;
 }
 /* Eq. 8 and 9 with the receiver's cosine: n_omega = n.omega >= 0, r_omega = max(r.omega, 0), diffuse = I k_d n.l */
 LAO_FN float lao_light_weight(float diffuse, float n_omega, float specular, float r_omega, lao_int exponent) {
@@ -1334,31 +1337,23 @@ LAO_FN float lao_light_weight_author(lao_v3 omega, float n_omega, lao_v3 occlude
     LAO_EXACT float g = lao_max(1.5f - n_omega * (specular + diffuse), 0.0f);
     return g;
 }
-/* Difference of direction x in [0, 1], 1 - |t.t'|, from axial vectors of any length; -1 when either has none. */
+/* Difference of direction x in [0, 1], 1 - |t.t'|, from axial unit vectors; -1 when either is (0, 0), no direction. */
 LAO_FN float lao_axial_difference(lao_v2 a, lao_v2 b) {
-    LAO_EXACT float length2 = (a.x * a.x + a.y * a.y) * (b.x * b.x + b.y * b.y);
-    if (!(length2 > 1.0e-4f)) {
-        return -1.0f;
-    }
-    LAO_EXACT float c = (a.x * b.x + a.y * b.y) / lao_sqrt(length2);
-    LAO_EXACT float x = 1.0f - lao_sqrt(lao_max(0.5f + 0.5f * c, 0.0f));
-    return lao_max(x, 0.0f);
+    LAO_EXACT float c = a.x * b.x + a.y * b.y;
+    LAO_EXACT float x = lao_max(1.0f - lao_sqrt(lao_max(0.5f + 0.5f * c, 0.0f)), 0.0f);
+    LAO_EXACT float known = lao_min(a.x * a.x + a.y * a.y, b.x * b.x + b.y * b.y);
+    return known > 0.25f ? x : -1.0f;
 }
 /* Eq. 10 as printed: x = ||t.x| - |t'.x||, from (alpha, validity); -1 when either is invalid. */
 LAO_FN float lao_alpha_difference(lao_v2 a, lao_v2 b) {
-    if (!(lao_min(a.y, b.y) > 0.5f)) {
-        return -1.0f;
-    }
     LAO_EXACT float x = lao_abs(a.x - b.x);
-    return x;
+    return lao_min(a.y, b.y) > 0.5f ? x : -1.0f;
 }
 /* Eq. 11; a negative difference means unknown: 1 */
 LAO_FN float lao_align_weight(float difference, float intensity, float least) {
-    if (difference < 0.0f) {
-        return 1.0f;
-    }
     LAO_EXACT float g = intensity * lao_hermite(difference);
-    return lao_max(lao_min(g, 1.0f), least);
+    LAO_EXACT float bounded = lao_max(lao_min(g, 1.0f), least);
+    return difference < 0.0f ? 1.0f : bounded;
 }
 
 /* What a pixel needs for all samples of one level: the mirror at N and the radius folded into three vectors, so that
@@ -1404,12 +1399,13 @@ LAO_FN lao_tap lao_tap_make(lao_sampler s, lao_v3 direction, lao_v2 size) {
     tap.flip = flip;
     tap.n_omega = lao_abs(c);
     tap.r_omega = lao_max(flip * lao_v3_dot(direction, s.r), 0.0f);
-    LAO_EXACT float cx = lao_floor(s.centre.x);
-    LAO_EXACT float cy = lao_floor(s.centre.y);
-    tap.use = 1.0f;
-    if ((x == cx && y == cy) || !(x >= 0.0f && y >= 0.0f && x < size.x && y < size.y)) {
-        tap.use = 0.0f;
-    }
+    LAO_EXACT float apart = lao_abs(x - lao_floor(s.centre.x)) + lao_abs(y - lao_floor(s.centre.y));
+    LAO_EXACT float middle_x = 0.5f * size.x - 0.5f;
+    LAO_EXACT float middle_y = 0.5f * size.y - 0.5f;
+    LAO_EXACT float inside_x = middle_x - lao_abs(x - middle_x);
+    LAO_EXACT float inside_y = middle_y - lao_abs(y - middle_y);
+    LAO_EXACT float use = lao_min(lao_min(inside_x, inside_y) + 1.0f, apart); /* at least 1 when it counts */
+    tap.use = use > 0.5f ? 1.0f : 0.0f;
     tap.x = x;
     tap.y = y;
     return tap;
@@ -2991,7 +2987,7 @@ static void lao__texel(lao__texels *out, const lao_lines_desc *desc, uint32_t po
         if (desc->colors) {
             memcpy(c, desc->colors + 4 * (size_t)attribute, 4);
         } else {
-            static const float sand[4] = {1.0f, 0.88f, 0.58f, 1.0f};
+            static const float sand[4] = {0.93f, 0.80f, 0.50f, 1.0f};
             const float *color = desc->color;
             int i, none = color[0] == 0 && color[1] == 0 && color[2] == 0 && color[3] == 0;
             for (i = 0; i < 4; i++) {

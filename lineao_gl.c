@@ -959,7 +959,7 @@ static void lao__gl_caps(const lao__gl *gl, lao_backend_caps *caps) {
 /* The indices of the vertex array: two triangles for every four vertices. */
 static lao_result lao__gl_quads_make(lao__gl *gl) {
     static const uint32_t corner[6] = {0, 1, 2, 2, 1, 3};
-    size_t size = LAO__GL_QUADS * 6 * sizeof(uint16_t);
+    size_t size = sizeof(uint16_t) * 6 * LAO__GL_QUADS;
     uint16_t *indices = (uint16_t *)lao__gl_allocate(gl, size);
     uint32_t i;
     if (!indices)
@@ -1283,34 +1283,46 @@ static size_t lao__gl_align(const lao__gl *gl, size_t size) {
     return (size + unit - 1) / unit * unit;
 }
 
-static size_t lao__gl_set_offset(const lao__gl *gl, const lao_execution *execution, uint32_t set) {
+/* Blocks of settings: one for each module of each set. */
+static size_t lao__gl_settings_offset(const lao__gl *gl, const lao_execution *execution,
+                                      uint32_t set, uint32_t module) {
+    size_t index = (size_t)set * gl->host->graph->module_count + module;
     return lao__gl_align(gl, execution->frame_size) +
-           set * lao__gl_align(gl, gl->host->settings_size);
+           index * lao__gl_align(gl, gl->host->settings_size);
 }
 
 static size_t lao__gl_step_offset(const lao__gl *gl, const lao_execution *execution,
                                   uint32_t step) {
-    return lao__gl_set_offset(gl, execution, execution->set_count) +
+    return lao__gl_settings_offset(gl, execution, execution->set_count, 0) +
            step * lao__gl_align(gl, sizeof execution->plan->steps->uniforms);
 }
 
-/* All uniforms of a frame go up at once: frame, settings of every set, every step. */
+static lao_result lao__gl_stage(lao__gl *gl, size_t size) {
+    if (size <= gl->staging_size)
+        return LAO_OK;
+    lao__gl_release(gl, gl->staging, gl->staging_size);
+    gl->staging = (uint8_t *)lao__gl_allocate(gl, size);
+    gl->staging_size = gl->staging ? size : 0;
+    return gl->staging ? LAO_OK
+                       : lao__gl_fail(gl->host, LAO_LOG_BACKEND_MEMORY, "uniforms of a frame");
+}
+
+/* All uniforms of a frame go up at once: the frame's, the settings, every step's. */
 static lao_result lao__gl_upload(lao__gl *gl, const lao_execution *execution) {
     const lao_plan *plan = execution->plan;
-    size_t size = lao__gl_step_offset(gl, execution, plan->step_count),
-           settings = gl->host->settings_size;
-    uint32_t i;
-    if (size > gl->staging_size) {
-        lao__gl_release(gl, gl->staging, gl->staging_size);
-        gl->staging = (uint8_t *)lao__gl_allocate(gl, size);
-        gl->staging_size = gl->staging ? size : 0;
-        if (!gl->staging)
-            return lao__gl_fail(gl->host, LAO_LOG_BACKEND_MEMORY, "uniforms of a frame");
-    }
+    const uint8_t *settings = (const uint8_t *)execution->set_uniforms;
+    size_t size = lao__gl_step_offset(gl, execution, plan->step_count);
+    lao_result result = lao__gl_stage(gl, size);
+    uint32_t set, module, i;
+    if (result)
+        return result;
     memcpy(gl->staging, execution->frame_uniforms, execution->frame_size);
-    for (i = 0; i < execution->set_count; i++)
-        memcpy(gl->staging + lao__gl_set_offset(gl, execution, i),
-               (const uint8_t *)execution->set_uniforms + i * settings, settings);
+    for (set = 0; set < execution->set_count; set++)
+        for (module = 0; module < gl->host->graph->module_count; module++) {
+            memcpy(gl->staging + lao__gl_settings_offset(gl, execution, set, module), settings,
+                   gl->host->settings_size);
+            settings += gl->host->settings_size;
+        }
     for (i = 0; i < plan->step_count; i++)
         memcpy(gl->staging + lao__gl_step_offset(gl, execution, i), plan->steps[i].uniforms,
                sizeof plan->steps[i].uniforms);
@@ -1473,7 +1485,8 @@ static lao_result lao__gl_run_step(const lao__gl *gl, const lao__gl_view *view, 
         lao__gl_viewport(gl, viewport);
         lao__gl_clear(gl, step);
         lao__gl_set_tests(gl, execution->plan, step);
-        lao__gl_bind_block(gl, LAO__GL_BLOCK_SETTINGS, lao__gl_set_offset(gl, execution, step->set),
+        lao__gl_bind_block(gl, LAO__GL_BLOCK_SETTINGS,
+                           lao__gl_settings_offset(gl, execution, step->set, step->module),
                            gl->host->settings_size);
         lao__gl_bind_block(gl, LAO__GL_BLOCK_STEP, lao__gl_step_offset(gl, execution, index),
                            sizeof step->uniforms);

@@ -177,6 +177,7 @@ typedef struct lao__vk {
     VkDevice device;
     VkPhysicalDeviceMemoryProperties memory;
     VkDeviceSize uniform_alignment;
+    uint32_t units;          /* textures of one stage */
     double timestamp_period; /* ns */
     uint64_t timestamp_mask; /* 0: no timestamps */
     const lao_shader *fullscreen;
@@ -579,8 +580,8 @@ static lao_result lao__vk_check_device(lao__vk *vk, lao_backend_caps *caps) {
     caps->max_image_size =
         lao__vk_least(limits.maxImageDimension2D,
                       lao__vk_least(limits.maxFramebufferWidth, limits.maxFramebufferHeight));
-    caps->max_texture_units = lao__vk_least(limits.maxPerStageDescriptorSamplers,
-                                            limits.maxPerStageDescriptorSampledImages);
+    caps->max_texture_units = vk->units = lao__vk_least(limits.maxPerStageDescriptorSamplers,
+                                                        limits.maxPerStageDescriptorSampledImages);
     caps->shaders = lao_shaders;
     caps->shader_count = lao_shader_count;
     return LAO_OK;
@@ -751,7 +752,7 @@ static lao_result lao__vk_program_make(lao__vk *vk, uint32_t index, const lao_sh
         return LAO_OK;
     if (!shader || !shader->fragment.words || (!shader->vertex.words && !vk->fullscreen))
         return lao__vk_fail(vk, LAO_LOG_SHADER_COMPILE, vk->host->graph->shader_names[index]);
-    if (shader->texture_count > LAO_MAX_READS)
+    if (shader->texture_count > lao__vk_least(vk->units, LAO_MAX_READS))
         return lao__vk_fail(vk, LAO_LOG_UNITS, shader->name);
     memset(&made, 0, sizeof made);
     memset(bindings, 0, sizeof bindings);

@@ -6,9 +6,11 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* ---- Adding -------------------------------------------------------------------------------------------------------- */
+/* ---- Adding ---------------------------------------------------------------------------------- */
 
-static size_t line_begin(const io_reader *r, size_t line) { return line ? r->line_ends[line - 1] : 0; }
+static size_t line_begin(const io_reader *r, size_t line) {
+    return line ? r->line_ends[line - 1] : 0;
+}
 
 bool io_add_point(io_reader *r, const double p[3], size_t row) {
     const double huge = 1e30; /* squares of it still fit a double, and it fits a float */
@@ -69,8 +71,10 @@ bool io_add_cells(io_reader *r, const io_view *points, const io_cells *cells, si
             size_t length;
             if (at >= cells->index.count || !io_view_index(&cells->index, at, &length) ||
                 length > cells->index.count - at - 1)
-                return io_fail(r, "line %zu of %zu reaches beyond the %zu numbers of its list; the "
-                                  "file is damaged", i + 1, cells->count, cells->index.count);
+                return io_fail(r,
+                               "line %zu of %zu reaches beyond the %zu numbers of its list; the "
+                               "file is damaged",
+                               i + 1, cells->count, cells->index.count);
             end = ++at + length;
         } else if (!io_view_index(&cells->ends, i, &end) || end < at || end > cells->index.count) {
             return io_fail(r, "line %zu of %zu has a broken end: its offset must be in [%zu, %zu]",
@@ -93,7 +97,7 @@ bool io_add_cells(io_reader *r, const io_view *points, const io_cells *cells, si
     return true;
 }
 
-/* ---- Attributes ------------------------------------------------------------------------------------------------------ */
+/* ---- Attributes ------------------------------------------------------------------------------ */
 
 enum { MOST_COLUMNS = 256 };
 
@@ -106,7 +110,8 @@ static io_column *column_named(io_reader *r, io_columns *columns, const char *na
                                uint32_t components, size_t batch) {
     for (size_t i = 0; i < columns->count; i++) {
         io_column *column = &columns->items[i];
-        if (column->components == components && column->rows <= batch && !strcmp(column->name, name))
+        if (column->components == components && column->rows <= batch &&
+            !strcmp(column->name, name))
             return column;
     }
     io_column *items =
@@ -122,7 +127,8 @@ static io_column *column_named(io_reader *r, io_columns *columns, const char *na
 
 /* Rows that no batch filled become NaN. */
 static bool pad_column(io_reader *r, io_column *column, size_t rows) {
-    float *data = io_grow(r, column->data, &column->capacity, rows * column->components, sizeof *data);
+    float *data =
+        io_grow(r, column->data, &column->capacity, rows * column->components, sizeof *data);
     if (!data)
         return false;
     column->data = data;
@@ -204,14 +210,14 @@ bool io_bundle_add(io_reader *r, io_bundle *bundle, uint32_t row) {
     return true;
 }
 
-/* ---- Filters --------------------------------------------------------------------------------------------------------- */
+/* ---- Filters --------------------------------------------------------------------------------- */
 
 static bool unknown_bundle(io_reader *r) {
     char names[256] = "";
     size_t used = 0;
     for (size_t i = 0; i < r->bundle_count && used < sizeof names; i++) {
-        int more = snprintf(names + used, sizeof names - used, "%s%s", i ? ", " : "",
-                            r->bundles[i].name);
+        int more =
+            snprintf(names + used, sizeof names - used, "%s%s", i ? ", " : "", r->bundles[i].name);
         used += (size_t)more;
     }
     if (!r->bundle_count)
@@ -220,7 +226,8 @@ static bool unknown_bundle(io_reader *r) {
                    r->bundle_count, names, used >= sizeof names ? "..." : "");
 }
 
-/* Number of the line with this row; the rows of the lines ascend. SIZE_MAX when the line had no points. */
+/* Number of the line with this row; the rows of the lines ascend. SIZE_MAX when the line had no
+ * points. */
 static size_t line_of_row(const io_reader *r, uint32_t row) {
     size_t low = 0, high = r->line_count;
     while (low < high) {
@@ -240,7 +247,7 @@ static bool keep_bundle(io_reader *r, uint8_t *keep) {
     bool found = false;
     memset(keep, 0, r->line_count);
     for (size_t i = 0; i < r->bundle_count; i++) {
-        if (strcmp(r->bundles[i].name, name))
+        if (strcmp(r->bundles[i].name, name) != 0)
             continue;
         found = true;
         for (size_t k = 0; k < r->bundles[i].count; k++) {
@@ -274,7 +281,8 @@ static bool filter(io_reader *r, uint32_t *place, size_t *lines, size_t *points)
     size_t every = options->every ? options->every : 1, seen = 0;
     for (size_t i = 0; i < r->line_count; i++) {
         place[i] = UINT32_MAX;
-        if (!keep[i] || (options->min_length > 0 && line_length(r, i) < (double)options->min_length))
+        if (!keep[i] ||
+            (options->min_length > 0 && line_length(r, i) < (double)options->min_length))
             continue;
         if (seen++ % every)
             continue;
@@ -284,13 +292,15 @@ static bool filter(io_reader *r, uint32_t *place, size_t *lines, size_t *points)
     return true;
 }
 
-/* ---- Handing over ------------------------------------------------------------------------------------------------------ */
+/* ---- Handing over ---------------------------------------------------------------------------- */
 
-/* Memory of the result outlives the reader; a zero count gives a small block, so that NULL always means failure. */
+/* Memory of the result outlives the reader; a zero count gives a small block, so that NULL always
+ * means failure. */
 static void *take_memory(io_reader *r, size_t count, size_t size) {
     void *memory = calloc(count ? count : 1, size);
     if (!memory)
-        io_fail(r, "needs %zu MB of memory, which the system does not give", (count >> 20) * size);
+        io_error_set(r->error, "needs %zu MB of memory, which the system does not give",
+                     (count >> 20) * size);
     return memory;
 }
 
@@ -300,8 +310,9 @@ static char *take_text(io_reader *r, const char *text) {
     return copy ? memcpy(copy, text, size) : NULL;
 }
 
-/* An axis is moved to its middle when that is farther away than the data is wide: then the floats get finer, and
- * coordinates that were floats stay exact, for the moved ones are smaller multiples of the same unit. */
+/* An axis is moved to its middle when that is farther away than the data is wide: then the floats
+ * get finer, and coordinates that were floats stay exact, for the moved ones are smaller multiples
+ * of the same unit. */
 static void find_origin(io_lines *lines) {
     for (int axis = 0; axis < 3; axis++) {
         double low = lines->bounds[0][axis], high = lines->bounds[1][axis];
@@ -346,7 +357,8 @@ static bool copy_geometry(io_reader *r, const uint32_t *place, size_t line_count
 }
 
 static bool copy_columns(io_reader *r, const io_columns *columns, const uint32_t *place,
-                         bool of_points, const io_lines *lines, uint32_t *count, io_attribute **out) {
+                         bool of_points, const io_lines *lines, uint32_t *count,
+                         io_attribute **out) {
     size_t rows = of_points ? r->point_count : r->line_count;
     if (columns->count && !(*out = take_memory(r, columns->count, sizeof **out)))
         return false;
@@ -373,7 +385,8 @@ static bool copy_columns(io_reader *r, const io_columns *columns, const uint32_t
 }
 
 static bool copy_groups(io_reader *r, const uint32_t *place, io_lines *lines) {
-    if (r->bundle_count && !(lines->groups = take_memory(r, r->bundle_count, sizeof *lines->groups)))
+    if (r->bundle_count &&
+        !(lines->groups = take_memory(r, r->bundle_count, sizeof *lines->groups)))
         return false;
     for (size_t i = 0; i < r->bundle_count; i++) {
         const io_bundle *bundle = &r->bundles[i];
@@ -402,9 +415,11 @@ static bool warn_of_content(io_reader *r, const io_lines *lines) {
     for (int axis = 0; axis < 3; axis++)
         largest = fmax(largest, fmax(fabs(lines->bounds[0][axis]), fabs(lines->bounds[1][axis])));
     if (r->dropped_points &&
-        !io_warn(r, "%zu points were left out: their coordinates are not finite", r->dropped_points))
+        !io_warn(r, "%zu points were left out: their coordinates are not finite",
+                 r->dropped_points))
         return false;
-    if (r->empty_lines && !io_warn(r, "%zu lines were left out: they have no points", r->empty_lines))
+    if (r->empty_lines &&
+        !io_warn(r, "%zu lines were left out: they have no points", r->empty_lines))
         return false;
     if ((largest > 1e6 || (largest > 0 && largest < 1e-6)) &&
         !io_warn(r, "coordinates reach %g mm; the file may declare the wrong byte order", largest))

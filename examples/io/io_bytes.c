@@ -4,9 +4,11 @@
 #include <math.h>
 #include <string.h>
 
-/* ---- Text -------------------------------------------------------------------------------------------------------- */
+/* ---- Text ------------------------------------------------------------------------------------ */
 
-static char lower(char c) { return c >= 'A' && c <= 'Z' ? (char)(c - 'A' + 'a') : c; }
+static char lower(char c) {
+    return c >= 'A' && c <= 'Z' ? (char)(c - 'A' + 'a') : c;
+}
 
 static bool is_blank(char c) {
     return c == ' ' || c == '\t' || c == '\n' || c == '\r' || c == '\v' || c == '\f';
@@ -41,7 +43,7 @@ io_text io_text_trim(io_text text) {
     return text;
 }
 
-/* ---- Cursor ------------------------------------------------------------------------------------------------------ */
+/* ---- Cursor ---------------------------------------------------------------------------------- */
 
 const uint8_t *io_take(io_cursor *cursor, size_t count) {
     if (count > cursor->size - cursor->at)
@@ -87,9 +89,10 @@ size_t io_line_number(const io_cursor *cursor, size_t at) {
     return line;
 }
 
-/* ---- Numbers ----------------------------------------------------------------------------------------------------- */
+/* ---- Numbers --------------------------------------------------------------------------------- */
 
-/* mantissa * 10^exponent; exact where double arithmetic is, else within one unit in the last place. */
+/* mantissa * 10^exponent; exact where double arithmetic is, else within one unit in the last place.
+ */
 static double scaled(uint64_t mantissa, long exponent) {
     static const double exact[] = {1e0,  1e1,  1e2,  1e3,  1e4,  1e5,  1e6,  1e7,
                                    1e8,  1e9,  1e10, 1e11, 1e12, 1e13, 1e14, 1e15,
@@ -117,7 +120,8 @@ static bool parse_special(io_text text, double *value) {
         return true;
     }
     *value = INFINITY;
-    return io_text_is(text, "inf") || io_text_is(text, "infinity") || io_text_starts(text, "1.#inf");
+    return io_text_is(text, "inf") || io_text_is(text, "infinity") ||
+           io_text_starts(text, "1.#inf");
 }
 
 static bool is_digit(io_text text, size_t i) {
@@ -190,7 +194,7 @@ bool io_parse_size(io_text text, size_t *value) {
     return text.size > 0;
 }
 
-/* ---- Typed views --------------------------------------------------------------------------------------------------- */
+/* ---- Typed views ----------------------------------------------------------------------------- */
 
 io_type io_type_named(io_text name) {
     // clang-format off
@@ -202,8 +206,9 @@ io_type io_type_named(io_text name) {
         {"int32", IO_I32}, {"int", IO_I32}, {"vtkidtype", IO_I32}, {"vtktypeint32", IO_I32},
         {"uint32", IO_U32}, {"unsigned_int", IO_U32}, {"vtktypeuint32", IO_U32},
         {"int64", IO_I64}, {"long", IO_I64}, {"long_long", IO_I64}, {"vtktypeint64", IO_I64},
-        {"uint64", IO_U64}, {"unsigned_long", IO_U64}, {"unsigned_long_long", IO_U64}, {"vtktypeuint64", IO_U64},
-        {"float16", IO_F16}, {"float32", IO_F32}, {"float", IO_F32}, {"float64", IO_F64}, {"double", IO_F64},
+        {"uint64", IO_U64}, {"unsigned_long", IO_U64}, {"unsigned_long_long", IO_U64},
+        {"vtktypeuint64", IO_U64}, {"float16", IO_F16}, {"float32", IO_F32}, {"float", IO_F32},
+        {"float64", IO_F64}, {"double", IO_F64},
     };
     // clang-format on
     for (size_t i = 0; i < sizeof types / sizeof types[0]; i++)
@@ -292,7 +297,8 @@ double io_view_real(const io_view *view, size_t row, uint32_t component) {
 bool io_view_index(const io_view *view, size_t row, size_t *value) {
     if (view->type == IO_F16 || view->type == IO_F32 || view->type == IO_F64) {
         double real = io_view_real(view, row, 0);
-        if (!(real >= 0 && real < 9007199254740992.0) || floor(real) != real || real > (double)SIZE_MAX)
+        if (!(real >= 0 && real < 9007199254740992.0) || floor(real) != real ||
+            real > (double)SIZE_MAX)
             return false;
         *value = (size_t)real;
         return true;
@@ -308,6 +314,7 @@ io_view io_view_doubles(const double *values, size_t count, uint32_t components)
     const uint16_t one = 1;
     uint8_t low;
     memcpy(&low, &one, 1);
-    io_view view = {(const uint8_t *)values, count, components * sizeof *values, components, IO_F64, !low};
+    io_view view = {
+        (const uint8_t *)values, count, components * sizeof *values, components, IO_F64, !low};
     return view;
 }

@@ -1,8 +1,8 @@
-/* What the readers and writers of examples/io share: memory of one read, bounds-checked bytes, typed views, and the
- * builder that turns points and arrays into io_lines. Private to examples/io.
+/* What the readers and writers of examples/io share: memory of one read, bounds-checked bytes,
+ * typed views, and the builder that turns points and arrays into io_lines. Private to examples/io.
  *
- * One read = one io_reader. Everything a read allocates hangs on it and is freed together at its end, so that a format's
- * code returns false as soon as something is wrong, and never frees. */
+ * One read = one io_reader. Everything a read allocates hangs on it and is freed together at its
+ * end, so that a format's code returns false as soon as something is wrong, and never frees. */
 #ifndef LINEAO_IO_INTERNAL_H
 #define LINEAO_IO_INTERNAL_H
 
@@ -16,7 +16,7 @@
 #define IO_PRINTF(text, first)
 #endif
 
-/* ---- Text and bytes ---------------------------------------------------------------------------------------------- */
+/* ---- Text and bytes -------------------------------------------------------------------------- */
 
 typedef struct io_text { /* not terminated, not owned */
     const char *at;
@@ -36,24 +36,39 @@ io_text io_text_trim(io_text text); /* without blanks, line ends and NULs at bot
 
 /* The next count bytes; NULL, with the cursor unmoved, when fewer are left. */
 const uint8_t *io_take(io_cursor *cursor, size_t count);
-/* The rest of the line without its end ("\n" or "\r\n"), moving behind it; false at the end of the bytes. */
+/* The rest of the line without its end ("\n" or "\r\n"), moving behind it; false at the end of the
+ * bytes. */
 bool io_take_line(io_cursor *cursor, io_text *line);
-/* The next run of non-blank characters, leaving the cursor right behind it; false when there is none. */
+/* The next run of non-blank characters, leaving the cursor right behind it; false when there is
+ * none. */
 bool io_take_word(io_cursor *cursor, io_text *word);
 /* 1-based line number of a position, for messages. */
 size_t io_line_number(const io_cursor *cursor, size_t at);
 
-/* Numbers as text, in any locale: decimal, "nan", "inf", "1.#QNAN", "1e-45". False unless the whole text is one. */
+/* Numbers as text, in any locale: decimal, "nan", "inf", "1.#QNAN", "1e-45". False unless the whole
+ * text is one. */
 bool io_parse_real(io_text text, double *value);
 bool io_parse_size(io_text text, size_t *value);
 
-/* ---- Typed views of arrays in a file ----------------------------------------------------------------------------- */
+/* ---- Typed views of arrays in a file --------------------------------------------------------- */
 
 typedef enum io_type {
-    IO_NONE, IO_I8, IO_U8, IO_I16, IO_U16, IO_I32, IO_U32, IO_I64, IO_U64, IO_F16, IO_F32, IO_F64
+    IO_NONE,
+    IO_I8,
+    IO_U8,
+    IO_I16,
+    IO_U16,
+    IO_I32,
+    IO_U32,
+    IO_I64,
+    IO_U64,
+    IO_F16,
+    IO_F32,
+    IO_F64
 } io_type;
 
-/* count rows of components values each; row i begins at bytes + i * stride. All rows lie inside the bytes of the file. */
+/* count rows of components values each; row i begins at bytes + i * stride. All rows lie inside the
+ * bytes of the file. */
 typedef struct io_view {
     const uint8_t *bytes;
     size_t count, stride;
@@ -77,7 +92,7 @@ bool io_view_index(const io_view *view, size_t row, size_t *value);
 /* A view of doubles in memory. */
 io_view io_view_doubles(const double *values, size_t count, uint32_t components);
 
-/* ---- One read ---------------------------------------------------------------------------------------------------- */
+/* ---- One read -------------------------------------------------------------------------------- */
 
 typedef struct io_block io_block;
 
@@ -106,7 +121,7 @@ typedef struct io_reader {
     size_t allocated, limit; /* bytes */
     uint64_t step;           /* of progress: 0 unpacking, 1 reading, 2 finishing */
 
-    double *points; /* x y z */
+    double *points;       /* x y z */
     uint32_t *point_rows; /* the row of each point in the file's arrays */
     size_t point_count, point_capacity;
     uint32_t *line_ends;
@@ -124,17 +139,22 @@ typedef struct io_reader {
 
 void io_reader_free(io_reader *reader);
 
-/* Writes the error text and returns false, so that a reader may `return io_fail(...)`. */
+/* Both write the error text and are false, so that a reader may `return io_fail(...)`. */
 bool io_error_set(io_error *error, const char *format, ...) IO_PRINTF(2, 3);
-#define io_fail(reader, ...) io_error_set((reader)->error, __VA_ARGS__)
-bool io_warn(io_reader *reader, const char *format, ...) IO_PRINTF(2, 3); /* false when memory is short */
-bool io_tick(io_reader *reader, size_t done, size_t total); /* reports progress; false when the user cancels */
+#define io_fail(reader, ...) (io_error_set((reader)->error, __VA_ARGS__) && false)
+bool io_warn(io_reader *reader, const char *format, ...)
+    IO_PRINTF(2, 3); /* false when memory is short */
+bool io_tick(io_reader *reader, size_t done,
+             size_t total); /* reports progress; false when the user cancels */
 
-/* Zeroed memory for count items, freed with the reader; NULL (error written) when the read's limit is passed. */
+/* Zeroed memory for count items, freed with the reader; NULL (error written) when the read's limit
+ * is passed. */
 void *io_alloc(io_reader *reader, size_t count, size_t size);
-/* Room for needed items in an array from io_alloc, at least doubling it; the old array stays valid when NULL. */
+/* Room for needed items in an array from io_alloc, at least doubling it; the old array stays valid
+ * when NULL. */
 void *io_grow(io_reader *reader, void *array, size_t *capacity, size_t needed, size_t size);
-/* A terminated copy that is fit for messages: control characters and broken UTF-8 become '?'. NULL = no memory. */
+/* A terminated copy that is fit for messages: control characters and broken UTF-8 become '?'. NULL
+ * = no memory. */
 char *io_copy_text(io_reader *reader, io_text text);
 
 bool io_read_file(io_reader *reader, const char *path, io_cursor *out);
@@ -143,15 +163,16 @@ bool io_gunzip(io_reader *reader, io_cursor *bytes);
 /* Inflates one zlib stream into exactly size bytes at out. */
 bool io_inflate(const uint8_t *bytes, size_t count, uint8_t *out, size_t size);
 
-/* ---- Builder ------------------------------------------------------------------------------------------------------ */
+/* ---- Builder --------------------------------------------------------------------------------- */
 
-/* Adds a point to the line being built; row is its place in the file's point arrays. Points that are not finite are
- * dropped and counted. False when memory is short. */
+/* Adds a point to the line being built; row is its place in the file's point arrays. Points that
+ * are not finite are dropped and counted. False when memory is short. */
 bool io_add_point(io_reader *reader, const double position[3], size_t row);
-/* Ends the line; row is its number in the file. done of total is for progress. Lines without points vanish. */
+/* Ends the line; row is its number in the file. done of total is for progress. Lines without points
+ * vanish. */
 bool io_end_line(io_reader *reader, size_t row, size_t done, size_t total);
-/* Gives every point or line of the batch its values from a view, by row. Views with too few rows or too many
- * components are left out with a warning. */
+/* Gives every point or line of the batch its values from a view, by row. Views with too few rows or
+ * too many components are left out with a warning. */
 bool io_attach_points(io_reader *reader, io_text name, const io_view *view);
 bool io_attach_lines(io_reader *reader, io_text name, const io_view *view);
 /* Begins the next batch (piece of a file): rows count from 0 again. */
@@ -162,17 +183,18 @@ bool io_bundle_add(io_reader *reader, io_bundle *bundle, uint32_t row);
 /* Filters, centres and hands everything over. */
 bool io_finish(io_reader *reader, const char *format, io_lines *out);
 
-/* Cells of a VTK data set: counted = the numbers n i0 .. in-1 follow each other in `index`; otherwise cell i has the
- * indices from ends[i - 1] (0 for the first) up to ends[i]. */
+/* Cells of a VTK data set: counted = the numbers n i0 .. in-1 follow each other in `index`;
+ * otherwise cell i has the indices from ends[i - 1] (0 for the first) up to ends[i]. */
 typedef struct io_cells {
     size_t count;
     io_view index, ends;
     bool counted;
 } io_cells;
 /* Adds each cell as a line; first_row is the number of the first cell among all cells. */
-bool io_add_cells(io_reader *reader, const io_view *points, const io_cells *cells, size_t first_row);
+bool io_add_cells(io_reader *reader, const io_view *points, const io_cells *cells,
+                  size_t first_row);
 
-/* ---- Formats -------------------------------------------------------------------------------------------------------- */
+/* ---- Formats --------------------------------------------------------------------------------- */
 
 typedef enum io_match { IO_NO, IO_MAYBE, IO_YES } io_match;
 

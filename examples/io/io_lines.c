@@ -59,9 +59,10 @@ static const format *find_format(const io_cursor *bytes, const char *name) {
     return named ? named : maybe;
 }
 
-/* ---- Reading --------------------------------------------------------------------------------------------------------- */
+/* ---- Reading --------------------------------------------------------------------------------- */
 
-/* Real files need at most a few times their size; compressed ones more. 32-bit systems have less to give. */
+/* Real files need at most a few times their size; compressed ones more. 32-bit systems have less to
+ * give. */
 static void set_limit(io_reader *r, size_t size) {
     const uint64_t most = sizeof(size_t) > 4 ? UINT64_C(32) << 30 : UINT64_C(1) << 30;
     uint64_t limit = size > most / 4096 ? most : (UINT64_C(64) << 20) + (uint64_t)size * 4096;
@@ -113,7 +114,7 @@ bool io_read_lines(const char *path, const io_options *options, io_lines *out, i
     return done;
 }
 
-/* ---- Writing --------------------------------------------------------------------------------------------------------- */
+/* ---- Writing --------------------------------------------------------------------------------- */
 
 void io_put_u32(FILE *file, uint32_t value) {
     for (int shift = 0; shift < 32; shift += 8)
@@ -168,7 +169,8 @@ static FILE *open_temporary(const char *path, char **name, io_error *error) {
 }
 
 /* Closes always; true when every byte has arrived under the final name. */
-static bool finish_file(FILE *file, bool written, const char *name, const char *path, io_error *error) {
+static bool finish_file(FILE *file, bool written, const char *name, const char *path,
+                        io_error *error) {
     int problem = 0;
     if (ferror(file) || (written && fflush(file)))
         problem = errno ? errno : EIO;

@@ -7,7 +7,7 @@
 #include <string.h>
 #include <zlib.h>
 
-/* ---- Messages ------------------------------------------------------------------------------------------------------ */
+/* ---- Messages -------------------------------------------------------------------------------- */
 
 bool io_error_set(io_error *error, const char *format, ...) {
     if (!error)
@@ -51,7 +51,7 @@ bool io_tick(io_reader *reader, size_t done, size_t total) {
     return io_fail(reader, "reading was cancelled");
 }
 
-/* ---- Memory -------------------------------------------------------------------------------------------------------- */
+/* ---- Memory ---------------------------------------------------------------------------------- */
 
 struct io_block {
     io_block *next, *previous;
@@ -68,13 +68,16 @@ enum { BLOCK_HEAD = offsetof(io_block, data) };
 static void *block_resize(io_reader *reader, io_block *old, size_t size) {
     size_t before = old ? old->size : 0;
     if (size > reader->limit - (reader->allocated - before)) {
-        io_fail(reader, "needs more than the %zu MB of memory that a file of this size may take; it "
-                        "is damaged, or was made to fill the memory", reader->limit >> 20);
+        io_error_set(reader->error,
+                     "needs more than the %zu MB of memory that a file of this size may take; it "
+                     "is damaged, or was made to fill the memory",
+                     reader->limit >> 20);
         return NULL;
     }
     io_block *block = old ? realloc(old, BLOCK_HEAD + size) : calloc(1, BLOCK_HEAD + size);
     if (!block) {
-        io_fail(reader, "needs %zu MB of memory, which the system does not give", size >> 20);
+        io_error_set(reader->error, "needs %zu MB of memory, which the system does not give",
+                     size >> 20);
         return NULL;
     }
     reader->allocated += size - before;
@@ -93,8 +96,10 @@ static void *block_resize(io_reader *reader, io_block *old, size_t size) {
 /* The limit keeps products small enough that the head can be added. */
 static bool product(io_reader *reader, size_t count, size_t size, size_t *bytes) {
     if (count > reader->limit / size) {
-        io_fail(reader, "asks for %zu items of %zu bytes, more than a file of this size may need; it "
-                        "is damaged", count, size);
+        io_error_set(reader->error,
+                     "asks for %zu items of %zu bytes, more than a file of this size may need; it "
+                     "is damaged",
+                     count, size);
         return false;
     }
     *bytes = count ? count * size : 1;
@@ -130,8 +135,11 @@ void io_reader_free(io_reader *reader) {
 
 /* Bytes of the UTF-8 sequence at p, 0 when it is broken. */
 static size_t utf8_size(const uint8_t *p, size_t left) {
-    size_t size = p[0] < 0x80 ? 1 : p[0] >= 0xC2 && p[0] < 0xE0 ? 2 : p[0] >= 0xE0 && p[0] < 0xF0 ? 3
-                  : p[0] >= 0xF0 && p[0] < 0xF5 ? 4 : 0;
+    size_t size = p[0] < 0x80                   ? 1
+                  : p[0] >= 0xC2 && p[0] < 0xE0 ? 2
+                  : p[0] >= 0xE0 && p[0] < 0xF0 ? 3
+                  : p[0] >= 0xF0 && p[0] < 0xF5 ? 4
+                                                : 0;
     if (size > left)
         return 0;
     for (size_t i = 1; i < size; i++)
@@ -158,7 +166,7 @@ char *io_copy_text(io_reader *reader, io_text text) {
     return copy;
 }
 
-/* ---- Files ----------------------------------------------------------------------------------------------------------- */
+/* ---- Files ----------------------------------------------------------------------------------- */
 
 /* In pieces, so that pipes work and a wrong size cannot make us take memory. */
 bool io_read_file(io_reader *reader, const char *path, io_cursor *out) {
@@ -178,7 +186,7 @@ bool io_read_file(io_reader *reader, const char *path, io_cursor *out) {
     }
     bool failed = got != 0;
     if (!failed && ferror(file)) {
-        io_fail(reader, "cannot be read: %s", strerror(errno));
+        io_error_set(reader->error, "cannot be read: %s", strerror(errno));
         failed = true;
     }
     fclose(file);
@@ -197,15 +205,16 @@ static uInt portion(size_t left) {
     return left < (1u << 30) ? (uInt)left : 1u << 30;
 }
 
-/* Inflates members one after the other until the bytes end; zeros or other padding behind the last one are ignored, as
- * gzip itself does. The stream belongs to the caller. */
+/* Inflates members one after the other until the bytes end; zeros or other padding behind the last
+ * one are ignored, as gzip itself does. The stream belongs to the caller. */
 static bool gunzip_members(io_reader *reader, z_stream *stream, io_cursor *bytes) {
     const uint64_t most = UINT64_C(8) << 30;
     uint8_t *out = NULL;
     size_t capacity = 0, size = 0, at = 0;
     for (int state = Z_OK; state != Z_STREAM_END;) {
         if (size > most)
-            return io_fail(reader, "unpacks to more than 8 GB; unpack it with gunzip and look at it");
+            return io_fail(reader,
+                           "unpacks to more than 8 GB; unpack it with gunzip and look at it");
         size_t wanted = size + (size < (64u << 10) ? 64u << 10 : size / 2);
         uint8_t *grown = io_grow(reader, out, &capacity, wanted, 1);
         if (!grown || !io_tick(reader, at, bytes->size))
@@ -225,11 +234,15 @@ static bool gunzip_members(io_reader *reader, z_stream *stream, io_cursor *bytes
             if (io_is_gzip(&rest))
                 state = inflateReset(stream);
         } else if (state == Z_BUF_ERROR && at == bytes->size) {
-            return io_fail(reader, "the gzip data ends too early, at byte %zu (%zu bytes unpacked); "
-                                   "copy or download the file again", at, size);
+            return io_fail(reader,
+                           "the gzip data ends too early, at byte %zu (%zu bytes unpacked); "
+                           "copy or download the file again",
+                           at, size);
         } else if (state != Z_OK && state != Z_BUF_ERROR) {
-            return io_fail(reader, "the gzip data is damaged near byte %zu (%s); copy or download the "
-                                   "file again", at, stream->msg ? stream->msg : "bad stream");
+            return io_fail(reader,
+                           "the gzip data is damaged near byte %zu (%s); copy or download the "
+                           "file again",
+                           at, stream->msg ? stream->msg : "bad stream");
         }
     }
     bytes->bytes = out;

@@ -1,4 +1,5 @@
-/* TCK (MRtrix): a text header, then triplets in RAS mm; a NaN triplet ends a line, an infinite one the file. */
+/* TCK (MRtrix): a text header, then triplets in RAS mm; a NaN triplet ends a line, an infinite one
+ * the file. */
 #include "io_internal.h"
 
 #include <math.h>
@@ -27,8 +28,10 @@ static bool parse_type(io_reader *r, io_text value, header *head) {
     head->type = io_text_starts(name, "float") ? io_type_named(name) : IO_NONE;
     head->typed = true;
     if (head->type != IO_F32 && head->type != IO_F64)
-        return io_fail(r, "has the datatype '%.*s'; TCK data is Float32LE, Float32BE, Float64LE or "
-                          "Float64BE", (int)(value.size < 40 ? value.size : 40), value.at);
+        return io_fail(r,
+                       "has the datatype '%.*s'; TCK data is Float32LE, Float32BE, Float64LE or "
+                       "Float64BE",
+                       (int)(value.size < 40 ? value.size : 40), value.at);
     return true;
 }
 
@@ -37,13 +40,15 @@ static bool parse_file(io_reader *r, io_text value, header *head) {
     io_cursor words = {(const uint8_t *)value.at, value.size, 0};
     io_text name, offset;
     if (!io_take_word(&words, &name) || !io_text_is(name, "."))
-        return io_fail(r, "keeps its points in another file; put them into this one with tckconvert");
+        return io_fail(r,
+                       "keeps its points in another file; put them into this one with tckconvert");
     if (!io_take_word(&words, &offset) || !io_parse_size(offset, &head->offset) || !head->offset)
         return io_fail(r, "has a header line 'file: .' without the byte offset of the data");
     return true;
 }
 
-/* Of keys that repeat the first counts: some writers append a second count, history comes in many lines. */
+/* Of keys that repeat the first counts: some writers append a second count, history comes in many
+ * lines. */
 static bool parse_line(io_reader *r, io_text line, header *head) {
     const char *colon = memchr(line.at, ':', line.size);
     if (!colon)
@@ -82,25 +87,29 @@ static bool read_header(io_reader *r, io_cursor *c, header *head) {
             head->offset = 0; /* inside the header: cannot be */
     }
     if (!head->typed)
-        return io_fail(r, "has no 'datatype:' in its header; add one, such as 'datatype: Float32LE'");
+        return io_fail(r,
+                       "has no 'datatype:' in its header; add one, such as 'datatype: Float32LE'");
     if (!head->ended && !head->offset)
-        return io_fail(r, "has a header without END and without 'file: . OFFSET': its data cannot be found");
+        return io_fail(
+            r, "has a header without END and without 'file: . OFFSET': its data cannot be found");
     if (!head->ended && !io_warn(r, "the header has no END; its data is taken from the offset"))
         return false;
     if (head->offset > c->size)
-        return io_fail(r, "has %zu bytes, but its data should begin at byte %zu; copy it again", c->size,
-                       head->offset);
+        return io_fail(r, "has %zu bytes, but its data should begin at byte %zu; copy it again",
+                       c->size, head->offset);
     if (head->offset && (!head->ended || head->offset >= end))
         c->at = head->offset;
     else
-        return io_warn(r, "the header tells no usable data offset; the data is taken from behind END");
+        return io_warn(r,
+                       "the header tells no usable data offset; the data is taken from behind END");
     return true;
 }
 
 /* Reads up to the infinite triplet. */
 static bool read_points(io_reader *r, io_cursor *c, const header *head, size_t *count) {
     size_t size = io_type_size(head->type), begin = c->at, row = 0, pending = 0;
-    io_view view = {c->bytes + c->at, (c->size - c->at) / (3 * size), 3 * size, 3, head->type, head->big};
+    io_view view = {c->bytes + c->at, (c->size - c->at) / (3 * size), 3 * size, 3, head->type,
+                    head->big};
     for (; row < view.count; row++) {
         double p[3];
         for (uint32_t i = 0; i < 3; i++)
@@ -120,8 +129,11 @@ static bool read_points(io_reader *r, io_cursor *c, const header *head, size_t *
     }
     size_t left = c->size - begin - row * 3 * size;
     if (pending || left)
-        return io_fail(r, "ends inside line %zu, at byte %zu; %zu lines are whole. Copy the file again, or "
-                          "write it anew", *count + 1, c->size, *count);
+        return io_fail(
+            r,
+            "ends inside line %zu, at byte %zu; %zu lines are whole. Copy the file again, or "
+            "write it anew",
+            *count + 1, c->size, *count);
     return io_warn(r, "the end mark (inf inf inf) is missing behind the last line");
 }
 
@@ -135,7 +147,7 @@ bool io_read_tck(io_reader *r, io_cursor *c) {
     return true;
 }
 
-/* ---- Writing --------------------------------------------------------------------------------------------------------- */
+/* ---- Writing --------------------------------------------------------------------------------- */
 
 static void put_triplet(FILE *file, double x, double y, double z) {
     io_put_f32(file, x);
@@ -149,13 +161,15 @@ bool io_write_tck(FILE *file, const io_lines *lines, io_error *error) {
     int size = 0;
     for (int offset = 0; offset != size || !size;) { /* the offset is part of the text it counts */
         offset = size;
-        size = snprintf(head, sizeof head, "%s\ndatatype: Float32LE\ncount: %010lu\nfile: . %d\nEND\n",
-                        magic, (unsigned long)lines->line_count, offset);
+        size =
+            snprintf(head, sizeof head, "%s\ndatatype: Float32LE\ncount: %010lu\nfile: . %d\nEND\n",
+                     magic, (unsigned long)lines->line_count, offset);
     }
     fwrite(head, 1, (size_t)size, file);
     for (size_t i = 0; i < lines->line_count && !ferror(file); i++) {
         for (size_t k = lines->offsets[i]; k < lines->offsets[i + 1]; k++)
-            put_triplet(file, io_position(lines, k, 0), io_position(lines, k, 1), io_position(lines, k, 2));
+            put_triplet(file, io_position(lines, k, 0), io_position(lines, k, 1),
+                        io_position(lines, k, 2));
         put_triplet(file, NAN, NAN, NAN);
     }
     put_triplet(file, INFINITY, INFINITY, INFINITY);

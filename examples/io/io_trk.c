@@ -1,17 +1,27 @@
-/* TRK (TrackVis): a header of 1000 bytes, then for each line its number of points, rows of x y z and scalars, and
- * properties. Coordinates are voxel mm with the corner of the first voxel at 0; the header leads to RAS mm. */
+/* TRK (TrackVis): a header of 1000 bytes, then for each line its number of points, rows of x y z
+ * and scalars, and properties. Coordinates are voxel mm with the corner of the first voxel at 0;
+ * the header leads to RAS mm. */
 #include "io_internal.h"
 
 #include <math.h>
 #include <string.h>
 
-// clang-format off
 enum { /* byte offsets in the header */
-    HEADER = 1000, DIM = 6, VOXEL_SIZE = 12, SCALAR_COUNT = 36, SCALAR_NAMES = 38, PROPERTY_COUNT = 238,
-    PROPERTY_NAMES = 240, VOX_TO_RAS = 440, VOXEL_ORDER = 948, LINE_COUNT = 988, VERSION = 992, HEADER_SIZE = 996,
-    NAMES = 10, NAME = 20
+       DIM = 6,
+       VOXEL_SIZE = 12,
+       SCALAR_COUNT = 36,
+       SCALAR_NAMES = 38,
+       PROPERTY_COUNT = 238,
+       PROPERTY_NAMES = 240,
+       VOX_TO_RAS = 440,
+       VOXEL_ORDER = 948,
+       IMAGE_AXES = 956,
+       LINE_COUNT = 988,
+       VERSION = 992,
+       HEADER_SIZE = 996,
+       HEADER = 1000
 };
-// clang-format on
+enum { NAMES = 10, NAME = 20 }; /* names of scalars and properties, and their size */
 
 io_match io_sniff_trk(const io_cursor *bytes) {
     return bytes->size >= 5 && !memcmp(bytes->bytes, "TRACK", 5) ? IO_YES : IO_NO;
@@ -51,7 +61,8 @@ typedef struct orientation { /* where each voxel axis points: RAS axis and sign 
     int axis[3], sign[3];
 } orientation;
 
-/* The axis codes of an affine: each column takes the RAS axis that it is most along and that is still free. */
+/* The axis codes of an affine: each column takes the RAS axis that it is most along and that is
+ * still free. */
 static orientation orientation_of_affine(const affine *a) {
     orientation result = {{0, 1, 2}, {1, 1, 1}};
     bool taken[3] = {false, false, false};
@@ -87,8 +98,8 @@ static bool orientation_of_text(io_text text, orientation *result) {
     return seen == 7;
 }
 
-/* Takes voxels in the order of the header to the order of the affine, the way nibabel does (it has written most files
- * where the two differ). */
+/* Takes voxels in the order of the header to the order of the affine, the way nibabel does (it has
+ * written most files where the two differ). */
 static affine reorder(const orientation *header, const orientation *target, const double dim[3]) {
     affine result;
     memset(&result, 0, sizeof result);
@@ -108,7 +119,7 @@ static bool read_vox_to_ras(io_reader *r, const uint8_t *head, bool big, affine 
     *matrix = affine_identity();
     if (io_u32(head + VERSION, big) < 2 || io_f32(head + VOX_TO_RAS + 60, big) == 0)
         return io_warn(r, "the header has no vox_to_ras matrix; the lines stay in voxel space");
-    for (int i = 0; i < 12; i++) {
+    for (size_t i = 0; i < 12; i++) {
         matrix->m[i / 4][i % 4] = (double)io_f32(head + VOX_TO_RAS + 4 * i, big);
         finite = finite && isfinite(matrix->m[i / 4][i % 4]);
     }
@@ -121,10 +132,10 @@ static bool read_vox_to_ras(io_reader *r, const uint8_t *head, bool big, affine 
 static bool read_voxel_size(io_reader *r, const uint8_t *head, bool big, const affine *matrix,
                             double size[3]) {
     bool broken = false;
-    for (int i = 0; i < 3; i++) {
+    for (size_t i = 0; i < 3; i++) {
         size[i] = (double)io_f32(head + VOXEL_SIZE + 4 * i, big);
         if (!(size[i] > 0) || !isfinite(size[i])) {
-            size[i] = column_norm(matrix, i);
+            size[i] = column_norm(matrix, (int)i);
             broken = true;
         }
     }
@@ -138,7 +149,7 @@ static bool read_affine(io_reader *r, const uint8_t *head, bool big, affine *res
     orientation from, to;
     if (!read_vox_to_ras(r, head, big, &matrix) || !read_voxel_size(r, head, big, &matrix, size))
         return false;
-    for (int i = 0; i < 3; i++) {
+    for (size_t i = 0; i < 3; i++) {
         dim[i] = io_u16(head + DIM + 2 * i, big);
         voxel.m[i][i] = 1 / size[i];
         voxel.m[i][3] = r->options->trk_no_half_voxel ? 0 : -0.5;
@@ -164,8 +175,9 @@ typedef struct layout { /* in 4-byte words */
     size_t scalars, properties;
 } layout;
 
-/* Reads each line's head to make sure that all of it is there, then adds the points. The row of a point is the place of
- * its x among the words of the body; that makes the scalars a view with a stride of one word. */
+/* Reads each line's head to make sure that all of it is there, then adds the points. The row of a
+ * point is the place of its x among the words of the body; that makes the scalars a view with a
+ * stride of one word. */
 static bool read_body(io_reader *r, io_cursor *c, layout of, const affine *to_ras, bool big) {
     int32_t declared = (int32_t)io_u32(c->bytes + LINE_COUNT, big);
     size_t words = 3 + of.scalars, count = 0;
@@ -174,18 +186,21 @@ static bool read_body(io_reader *r, io_cursor *c, layout of, const affine *to_ra
         const uint8_t *head = io_take(c, 4);
         uint32_t points = head ? io_u32(head, big) : 0;
         if (points > INT32_MAX)
-            return io_fail(r, "line %zu at byte %zu claims a negative number of points; %zu lines "
-                              "before it are whole, the rest is damaged", count + 1, begin, count);
+            return io_fail(r,
+                           "line %zu at byte %zu claims a negative number of points; %zu lines "
+                           "before it are whole, the rest is damaged",
+                           count + 1, begin, count);
         uint64_t needed = ((uint64_t)points * words + of.properties) * 4;
         const uint8_t *row = head && needed <= c->size ? io_take(c, (size_t)needed) : NULL;
         if (!row)
-            return io_fail(r, "ends inside line %zu, which begins at byte %zu and claims %lu points; "
-                              "%zu lines are whole. Copy the file again, or write it anew",
+            return io_fail(r,
+                           "ends inside line %zu, which begins at byte %zu and claims %lu points; "
+                           "%zu lines are whole. Copy the file again, or write it anew",
                            count + 1, begin, (unsigned long)points, count);
         size_t at = (begin + 4 - HEADER) / 4;
         for (uint32_t k = 0; k < points; k++, row += 4 * words, at += words) {
             double v[3], p[3];
-            for (int i = 0; i < 3; i++)
+            for (size_t i = 0; i < 3; i++)
                 v[i] = (double)io_f32(row + 4 * i, big);
             for (int i = 0; i < 3; i++)
                 p[i] = to_ras->m[i][0] * v[0] + to_ras->m[i][1] * v[1] + to_ras->m[i][2] * v[2] +
@@ -197,8 +212,11 @@ static bool read_body(io_reader *r, io_cursor *c, layout of, const affine *to_ra
             return false;
     }
     if (declared > 0 && count < (size_t)declared)
-        return io_fail(r, "ends at byte %zu after %zu whole lines, but its header promises %ld. Copy the "
-                          "file again, or set n_count to 0 (unknown)", c->size, count, (long)declared);
+        return io_fail(
+            r,
+            "ends at byte %zu after %zu whole lines, but its header promises %ld. Copy the "
+            "file again, or set n_count to 0 (unknown)",
+            c->size, count, (long)declared);
     if (c->at < c->size)
         return io_warn(r, "%zu bytes behind the last line are left out", c->size - c->at);
     return declared >= 0 || io_warn(r, "the header's n_count is negative; all lines are read");
@@ -225,7 +243,7 @@ typedef bool (*attach)(io_reader *r, io_text name, const io_view *view);
 static bool read_attributes(io_reader *r, io_view view, const uint8_t *names, size_t total,
                             const char *rest, attach add) {
     size_t used = 0;
-    for (int i = 0; i <= NAMES && used < total; i++) {
+    for (size_t i = 0; i <= NAMES && used < total; i++) {
         size_t components = total - used;
         io_text name = i < NAMES ? decode_name(names + i * NAME, &components) : io_text_of(rest);
         if (!name.size)
@@ -240,7 +258,8 @@ static bool read_attributes(io_reader *r, io_view view, const uint8_t *names, si
     return true;
 }
 
-/* Properties lie behind each line; their row is the number of the line, so they are gathered first. */
+/* Properties lie behind each line; their row is the number of the line, so they are gathered first.
+ */
 static bool read_properties(io_reader *r, const io_cursor *c, layout of, bool big) {
     size_t lines = 0, at = HEADER;
     if (!of.properties || !r->line_count)
@@ -262,18 +281,21 @@ static bool read_properties(io_reader *r, const io_cursor *c, layout of, bool bi
 bool io_read_trk(io_reader *r, io_cursor *c) {
     const uint8_t *head = io_take(c, HEADER);
     if (!head)
-        return io_fail(r, "is cut: the TRK header needs 1000 bytes and the file has %zu; copy it again",
-                       c->size);
+        return io_fail(
+            r, "is cut: the TRK header needs 1000 bytes and the file has %zu; copy it again",
+            c->size);
     if (io_sniff_trk(c) == IO_NO)
         return io_fail(r, "is not a TRK file: it does not begin with TRACK");
     bool big = io_u32(head + HEADER_SIZE, false) != HEADER;
     if (big && io_u32(head + HEADER_SIZE, true) != HEADER)
         return io_fail(r, "has a broken TRK header: hdr_size at byte 996 is %lu and must be 1000",
                        (unsigned long)io_u32(head + HEADER_SIZE, false));
-    uint16_t scalars = io_u16(head + SCALAR_COUNT, big), properties = io_u16(head + PROPERTY_COUNT, big);
+    uint16_t scalars = io_u16(head + SCALAR_COUNT, big),
+             properties = io_u16(head + PROPERTY_COUNT, big);
     if (scalars > INT16_MAX || properties > INT16_MAX)
-        return io_fail(r, "has a broken TRK header: n_scalars (byte 36) or n_properties (byte 238) is "
-                          "negative");
+        return io_fail(r,
+                       "has a broken TRK header: n_scalars (byte 36) or n_properties (byte 238) is "
+                       "negative");
     layout of = {scalars, properties};
     affine to_ras;
     if (!read_affine(r, head, big, &to_ras) || !read_body(r, c, of, &to_ras, big))
@@ -283,10 +305,12 @@ bool io_read_trk(io_reader *r, io_cursor *c) {
            read_properties(r, c, of, big);
 }
 
-/* ---- Writing --------------------------------------------------------------------------------------------------------- */
+/* ---- Writing --------------------------------------------------------------------------------- */
 
-/* How many of the attributes fit: ten names, and vectors of up to 9 components beside an 18-byte name. */
-static size_t fitting(const io_attribute *attributes, uint32_t count, const io_attribute *fit[NAMES]) {
+/* How many of the attributes fit: ten names, and vectors of up to 9 components beside an 18-byte
+ * name. */
+static size_t fitting(const io_attribute *attributes, uint32_t count,
+                      const io_attribute *fit[NAMES]) {
     size_t used = 0;
     for (uint32_t i = 0; i < count && used < NAMES; i++)
         if (attributes[i].components <= 9)
@@ -300,7 +324,8 @@ static uint16_t put_names(uint8_t *field, const io_attribute *const *fit, size_t
         size_t size = strlen(fit[i]->name);
         memcpy(field + i * NAME, fit[i]->name, size < NAME - 2 ? size : NAME - 2);
         if (fit[i]->components > 1)
-            field[i * NAME + (size < NAME - 2 ? size : NAME - 2) + 1] = (uint8_t)('0' + fit[i]->components);
+            field[i * NAME + (size < NAME - 2 ? size : NAME - 2) + 1] =
+                (uint8_t)('0' + fit[i]->components);
         total = (uint16_t)(total + fit[i]->components);
     }
     return total;
@@ -323,13 +348,16 @@ static void store_f32(uint8_t *at, double value) {
     store_u32(at, bits);
 }
 
-/* Voxels of 1 mm, along RAS, around the data: TrackVis wants all coordinates inside the volume. shift is RAS minus voxel mm. */
+/* Voxels of 1 mm, along RAS, around the data: TrackVis wants all coordinates inside the volume.
+ * shift is RAS minus voxel mm. */
 static void put_header(uint8_t head[HEADER], const io_lines *lines, double shift[3]) {
     memcpy(head, "TRACK", 6);
-    for (int i = 0; i < 3; i++) {
+    for (size_t i = 0; i < 3; i++) {
         double corner = floor(lines->bounds[0][i]);
         double cells = ceil(lines->bounds[1][i]) - corner + 1;
-        store_u16(head + DIM + 2 * i, cells < 1 ? 1 : cells > INT16_MAX ? INT16_MAX : (unsigned)cells);
+        store_u16(head + DIM + 2 * i, cells < 1           ? 1
+                                      : cells > INT16_MAX ? INT16_MAX
+                                                          : (unsigned)cells);
         store_f32(head + VOXEL_SIZE + 4 * i, 1);
         store_f32(head + VOX_TO_RAS + 20 * i, 1);
         store_f32(head + VOX_TO_RAS + 16 * i + 12, corner);
@@ -337,8 +365,8 @@ static void put_header(uint8_t head[HEADER], const io_lines *lines, double shift
     }
     store_f32(head + VOX_TO_RAS + 60, 1);
     memcpy(head + VOXEL_ORDER, "RAS", 4);
-    store_f32(head + 956, 1); /* image_orientation_patient: TrackVis looks at it */
-    store_f32(head + 956 + 16, 1);
+    store_f32(head + IMAGE_AXES, 1);
+    store_f32(head + IMAGE_AXES + 16, 1);
     store_u32(head + LINE_COUNT, lines->line_count);
     store_u32(head + VERSION, 2);
     store_u32(head + HEADER_SIZE, HEADER);
@@ -355,9 +383,11 @@ bool io_write_trk(FILE *file, const io_lines *lines, io_error *error) {
     double shift[3];
     const io_attribute *scalars[NAMES], *properties[NAMES];
     if (lines->line_count > INT32_MAX)
-        return io_error_set(error, "cannot be written: TRK holds up to 2147483647 lines; write .tck");
+        return io_error_set(error,
+                            "cannot be written: TRK holds up to 2147483647 lines; write .tck");
     size_t scalar_count = fitting(lines->point_attributes, lines->point_attribute_count, scalars);
-    size_t property_count = fitting(lines->line_attributes, lines->line_attribute_count, properties);
+    size_t property_count =
+        fitting(lines->line_attributes, lines->line_attribute_count, properties);
     put_header(head, lines, shift);
     store_u16(head + SCALAR_COUNT, put_names(head + SCALAR_NAMES, scalars, scalar_count));
     store_u16(head + PROPERTY_COUNT, put_names(head + PROPERTY_NAMES, properties, property_count));

@@ -1,4 +1,5 @@
-/* TRX: a zip archive, or a folder, of little-endian arrays whose names tell their types, and header.json. */
+/* TRX: a zip archive, or a folder, of little-endian arrays whose names tell their types, and
+ * header.json. */
 #include "io_internal.h"
 
 #include <cjson/cJSON.h>
@@ -20,14 +21,16 @@ typedef struct archive {
 } archive;
 
 io_match io_sniff_trx(const io_cursor *bytes) {
-    bool zip = bytes->size >= 4 && (!memcmp(bytes->bytes, "PK\3\4", 4) || !memcmp(bytes->bytes, "PK\5\6", 4));
+    bool zip = bytes->size >= 4 &&
+               (!memcmp(bytes->bytes, "PK\3\4", 4) || !memcmp(bytes->bytes, "PK\5\6", 4));
     return zip ? IO_YES : IO_NO;
 }
 
-/* ---- Entries ----------------------------------------------------------------------------------------------------------- */
+/* ---- Entries --------------------------------------------------------------------------------- */
 
 static bool is_wanted(const char *name) {
-    static const char *const wanted[] = {"header.json", "positions", "offsets", "dpv/", "dps/", "groups/"};
+    static const char *const wanted[] = {"header.json", "positions", "offsets",
+                                         "dpv/",        "dps/",      "groups/"};
     size_t size = strlen(name);
     for (size_t i = 0; i < sizeof wanted / sizeof wanted[0]; i++)
         if (size && name[size - 1] != '/' && io_text_starts(io_text_of(name), wanted[i]))
@@ -51,7 +54,8 @@ static bool load_zip_entry(io_reader *r, archive *a, zip_t *zip, zip_uint64_t in
     zip_stat_t info;
     if (zip_stat_index(zip, index, 0, &info) || !(info.valid & ZIP_STAT_NAME) ||
         !(info.valid & ZIP_STAT_SIZE))
-        return io_fail(r, "has a broken zip directory: entry %lu has no name or size", (unsigned long)index);
+        return io_fail(r, "has a broken zip directory: entry %lu has no name or size",
+                       (unsigned long)index);
     if (!is_wanted(info.name))
         return true;
     if (info.size > SIZE_MAX)
@@ -63,7 +67,8 @@ static bool load_zip_entry(io_reader *r, archive *a, zip_t *zip, zip_uint64_t in
     if (file)
         zip_fclose(file);
     if (bytes && !whole)
-        return io_fail(r, "has a damaged zip entry '%.64s' (%s); copy or download the file again", info.name,
+        return io_fail(r, "has a damaged zip entry '%.64s' (%s); copy or download the file again",
+                       info.name,
                        file ? "it does not unpack to its size and checksum" : zip_strerror(zip));
     io_cursor cursor = {bytes, (size_t)info.size, 0};
     return bytes && add_entry(r, a, info.name, cursor) && io_tick(r, (size_t)index, SIZE_MAX);
@@ -75,7 +80,8 @@ static bool load_zip(io_reader *r, archive *a, const io_cursor *bytes) {
     zip_source_t *source = zip_source_buffer_create(bytes->bytes, bytes->size, 0, &error);
     zip_t *zip = source ? zip_open_from_source(source, ZIP_RDONLY, &error) : NULL;
     if (!zip) {
-        io_fail(r, "is not a whole zip archive (%s); copy or download the file again", zip_error_strerror(&error));
+        io_error_set(r->error, "is not a whole zip archive (%s); copy or download the file again",
+                     zip_error_strerror(&error));
         zip_source_free(source);
         zip_error_fini(&error);
         return false;
@@ -110,9 +116,10 @@ static bool load_folder(io_reader *r, archive *a, const char *path, const char *
     return good;
 }
 
-/* ---- Arrays ------------------------------------------------------------------------------------------------------------ */
+/* ---- Arrays ---------------------------------------------------------------------------------- */
 
-/* Splits "dpv/fa.2.float32" behind its folder into name, components and type; the components may be absent. */
+/* Splits "dpv/fa.2.float32" behind its folder into name, components and type; the components may be
+ * absent. */
 static bool parse_name(const entry *e, const char *folder, io_text *name, io_view *view) {
     if (!io_text_starts(io_text_of(e->name), folder))
         return false;
@@ -131,7 +138,8 @@ static bool parse_name(const entry *e, const char *folder, io_text *name, io_vie
     if (type == IO_NONE || !components || components > IO_MAX_COMPONENTS)
         return false;
     size_t stride = components * io_type_size(type);
-    io_view result = {e->bytes.bytes, e->bytes.size / stride, stride, (uint32_t)components, type, false};
+    io_view result = {e->bytes.bytes, e->bytes.size / stride, stride, (uint32_t)components, type,
+                      false};
     *view = result;
     return true;
 }
@@ -166,20 +174,25 @@ static bool read_header(io_reader *r, const archive *a, size_t *lines, size_t *v
     if (!e)
         return io_fail(r, "has no header.json: it is not a TRX file");
     cJSON *json = cJSON_ParseWithLength((const char *)e->bytes.bytes, e->bytes.size);
-    bool good = json_count(json, "NB_STREAMLINES", lines) && json_count(json, "NB_VERTICES", vertices);
+    bool good =
+        json_count(json, "NB_STREAMLINES", lines) && json_count(json, "NB_VERTICES", vertices);
     cJSON_Delete(json);
-    return good || io_fail(r, "has a header.json without whole numbers NB_STREAMLINES and NB_VERTICES below "
-                              "4294967296; write the file anew");
+    return good ||
+           io_fail(r,
+                   "has a header.json without whole numbers NB_STREAMLINES and NB_VERTICES below "
+                   "4294967296; write the file anew");
 }
 
 /* New files have one offset per line and the end; older ones leave the end out. */
-static bool read_lines(io_reader *r, const io_view *positions, const io_view *offsets, size_t lines) {
+static bool read_lines(io_reader *r, const io_view *positions, const io_view *offsets,
+                       size_t lines) {
     size_t broken = 0, begin = 0, used = 0;
     for (size_t i = 0; i < lines; i++) {
         size_t end = positions->count;
         if (!io_view_index(offsets, i, &begin) || begin > positions->count)
             begin = positions->count;
-        if (i + 1 < offsets->count && (!io_view_index(offsets, i + 1, &end) || end > positions->count)) {
+        if (i + 1 < offsets->count &&
+            (!io_view_index(offsets, i + 1, &end) || end > positions->count)) {
             end = positions->count;
             broken++;
         }
@@ -189,7 +202,9 @@ static bool read_lines(io_reader *r, const io_view *positions, const io_view *of
             for (uint32_t axis = 0; axis < 3; axis++)
                 p[axis] = io_view_real(positions, begin, axis);
             if (used >= positions->count)
-                return io_fail(r, "has offsets that use points twice, at line %zu; write the file anew", i + 1);
+                return io_fail(
+                    r, "has offsets that use points twice, at line %zu; write the file anew",
+                    i + 1);
             if (!io_add_point(r, p, begin))
                 return false;
         }
@@ -216,8 +231,9 @@ static bool read_groups(io_reader *r, const entry *e, size_t lines) {
         else if (!io_bundle_add(r, bundle, (uint32_t)line))
             return false;
     }
-    return bundle && (!beyond || io_warn(r, "the group '%.64s' names %zu lines that are not in the file",
-                                         bundle->name, beyond));
+    return bundle &&
+           (!beyond || io_warn(r, "the group '%.64s' names %zu lines that are not in the file",
+                               bundle->name, beyond));
 }
 
 static bool read_attributes(io_reader *r, const archive *a, size_t lines, size_t vertices) {
@@ -258,13 +274,17 @@ static bool read_archive(io_reader *r, archive *a) {
     if (!found || !find_array(a, "offsets", &offsets) || offsets.components != 1)
         return io_fail(r, "has no array positions.3.TYPE or offsets.TYPE; write the file anew");
     if (positions.count < vertices)
-        return io_fail(r, "has %zu points, but its header promises %zu; copy the file again", positions.count, vertices);
-    if (positions.count > vertices && !io_warn(r, "the file has %zu points, its header says %zu", positions.count, vertices))
+        return io_fail(r, "has %zu points, but its header promises %zu; copy the file again",
+                       positions.count, vertices);
+    if (positions.count > vertices &&
+        !io_warn(r, "the file has %zu points, its header says %zu", positions.count, vertices))
         return false;
     positions.count = vertices;
     if (offsets.count < lines)
-        return io_fail(r, "has %zu offsets for %zu lines; copy the file again", offsets.count, lines);
-    if (offsets.count > lines + 1 && !io_warn(r, "the file has %zu offsets for %zu lines", offsets.count, lines))
+        return io_fail(r, "has %zu offsets for %zu lines; copy the file again", offsets.count,
+                       lines);
+    if (offsets.count > lines + 1 &&
+        !io_warn(r, "the file has %zu offsets for %zu lines", offsets.count, lines))
         return false;
     return read_lines(r, &positions, &offsets, lines) && read_attributes(r, a, lines, vertices);
 }

@@ -1,5 +1,6 @@
-/* TT (DSI Studio TinyTrack): a gzip'd MATLAB v4 file. Its array `track` holds, for each line, 3 x points, the first point
- * as int32 in 1/32 voxels, and int8 steps from point to point; trans_to_mni leads to mm. */
+/* TT (DSI Studio TinyTrack): a gzip'd MATLAB v4 file. Its array `track` holds, for each line, 3 x
+ * points, the first point as int32 in 1/32 voxels, and int8 steps from point to point; trans_to_mni
+ * leads to mm. */
 #include "io_internal.h"
 
 #include <math.h>
@@ -17,7 +18,8 @@ static bool take_matrix(io_cursor *c, matrix *out) {
     if (!head)
         return false;
     bool big = io_u32(head, false) > 9999;
-    uint32_t type = io_u32(head, big), rows = io_u32(head + 4, big), columns = io_u32(head + 8, big);
+    uint32_t type = io_u32(head, big), rows = io_u32(head + 4, big),
+             columns = io_u32(head + 8, big);
     uint32_t imaginary = io_u32(head + 12, big), length = io_u32(head + 16, big);
     const uint8_t *name = length >= 1 && length <= 256 ? io_take(c, length) : NULL;
     if (!name || type > 1052 || type / 10 % 10 > 5 || imaginary > 1 || rows > INT32_MAX ||
@@ -27,7 +29,8 @@ static bool take_matrix(io_cursor *c, matrix *out) {
     uint64_t count = (uint64_t)rows * columns, size = io_type_size(kind);
     uint64_t left = c->size - c->at;
     const uint8_t *bytes = count <= left / size / (1 + imaginary)
-                               ? io_take(c, (size_t)(count * size * (1 + imaginary))) : NULL;
+                               ? io_take(c, (size_t)(count * size * (1 + imaginary)))
+                               : NULL;
     out->name = io_text_trim((io_text){(const char *)name, length});
     io_view values = {bytes, (size_t)count, (size_t)size, 1, kind, big};
     out->values = values;
@@ -51,7 +54,8 @@ typedef struct transform { /* rows of x y z 1, for coordinates in 1/32 voxel */
     double m[3][4];
 } transform;
 
-static bool read_transform(io_reader *r, const io_view *values, const io_view *voxel, transform *out) {
+static bool read_transform(io_reader *r, const io_view *values, const io_view *voxel,
+                           transform *out) {
     memset(out, 0, sizeof *out);
     bool usable = values->count >= 12;
     for (size_t i = 0; i < 12 && values->count >= 12; i++) {
@@ -65,7 +69,8 @@ static bool read_transform(io_reader *r, const io_view *values, const io_view *v
         double size = voxel->count >= 3 ? io_view_real(voxel, i, 0) : 1;
         out->m[i][i] = (size > 0 && isfinite(size) ? size : 1) / 32;
     }
-    return io_warn(r, "there is no usable trans_to_mni; the lines stay in voxel space, scaled to mm");
+    return io_warn(r,
+                   "there is no usable trans_to_mni; the lines stay in voxel space, scaled to mm");
 }
 
 static bool add_point(io_reader *r, const transform *t, const double v[3], size_t row) {
@@ -81,12 +86,16 @@ static bool read_track(io_reader *r, const io_view *track, const transform *t, s
         size_t begin = c.at;
         const uint8_t *head = io_take(&c, 16);
         uint32_t length = head ? io_u32(head, track->big) : 0;
-        const uint8_t *step = head && length >= 3 && length % 3 == 0 ? io_take(&c, length - 3) : NULL;
+        const uint8_t *step =
+            head && length >= 3 && length % 3 == 0 ? io_take(&c, length - 3) : NULL;
         if (!step)
-            return io_fail(r, "is damaged in its array 'track': line %zu at byte %zu of it is cut or has a "
-                              "length that is no multiple of 3; %zu lines are whole", *lines + 1, begin, *lines);
+            return io_fail(
+                r,
+                "is damaged in its array 'track': line %zu at byte %zu of it is cut or has a "
+                "length that is no multiple of 3; %zu lines are whole",
+                *lines + 1, begin, *lines);
         double v[3];
-        for (int i = 0; i < 3; i++)
+        for (size_t i = 0; i < 3; i++)
             v[i] = (double)(int32_t)io_u32(head + 4 + 4 * i, track->big);
         size_t row = r->point_count;
         if (!add_point(r, t, v, row))
@@ -152,8 +161,11 @@ bool io_read_tt(io_reader *r, io_cursor *c) {
             cluster = array.values;
     }
     if (c->at < c->size)
-        return io_fail(r, "is cut or damaged: the MATLAB v4 array before byte %zu does not fit into the %zu "
-                          "bytes; copy the file again", c->at, c->size);
+        return io_fail(
+            r,
+            "is cut or damaged: the MATLAB v4 array before byte %zu does not fit into the %zu "
+            "bytes; copy the file again",
+            c->at, c->size);
     if (!found)
         return io_fail(r, "has no array 'track': it is a MATLAB v4 file, but not a TinyTrack one");
     known = read_transform(r, &affine, &voxel, &to_mm);

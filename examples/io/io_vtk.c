@@ -1,5 +1,6 @@
-/* VTK legacy files, DATASET POLYDATA: keywords and numbers as text, or numbers big-endian in between. Both layouts of cells
- * (counts before indices; since 5.1 OFFSETS and CONNECTIVITY) are read. */
+/* VTK legacy files, DATASET POLYDATA: keywords and numbers as text, or numbers big-endian in
+ * between. Both layouts of cells (counts before indices; since 5.1 OFFSETS and CONNECTIVITY) are
+ * read. */
 #include "io_internal.h"
 
 #include <string.h>
@@ -19,7 +20,7 @@ typedef struct vtk {
     io_view points;
     io_cells lines;
     size_t vertex_cells, other_cells;
-    scope scope;      /* of the arrays that follow */
+    scope scope; /* of the arrays that follow */
     size_t scope_rows;
     array *arrays;
     size_t array_count, array_capacity;
@@ -31,14 +32,16 @@ io_match io_sniff_vtk(const io_cursor *bytes) {
 }
 
 static bool fail_at(vtk *v, const char *what) {
-    return io_fail(v->r, "is damaged in line %zu (byte %zu): %s", io_line_number(&v->c, v->c.at), v->c.at, what);
+    return io_fail(v->r, "is damaged in line %zu (byte %zu): %s", io_line_number(&v->c, v->c.at),
+                   v->c.at, what);
 }
 
-/* ---- Numbers ------------------------------------------------------------------------------------------------------------ */
+/* ---- Numbers --------------------------------------------------------------------------------- */
 
 static bool take_size(vtk *v, size_t *value) {
     io_text word;
-    return (io_take_word(&v->c, &word) && io_parse_size(word, value)) || fail_at(v, "a count is missing here");
+    return (io_take_word(&v->c, &word) && io_parse_size(word, value)) ||
+           fail_at(v, "a count is missing here");
 }
 
 /* Binary numbers begin right behind the line that announces them. */
@@ -50,15 +53,19 @@ static bool end_announcement(vtk *v) {
 }
 
 static bool too_short(vtk *v, size_t count, uint32_t components) {
-    return io_fail(v->r, "ends too early: %zu x %lu numbers are announced before byte %zu, and %zu bytes follow; "
-                         "copy the file again", count, (unsigned long)components, v->c.at, v->c.size - v->c.at);
+    return io_fail(
+        v->r,
+        "ends too early: %zu x %lu numbers are announced before byte %zu, and %zu bytes follow; "
+        "copy the file again",
+        count, (unsigned long)components, v->c.at, v->c.size - v->c.at);
 }
 
 static bool take_binary(vtk *v, io_type type, size_t count, uint32_t components, io_view *out) {
     size_t stride = components * io_type_size(type);
     if (!end_announcement(v))
         return false;
-    const uint8_t *bytes = count <= (v->c.size - v->c.at) / stride ? io_take(&v->c, count * stride) : NULL;
+    const uint8_t *bytes =
+        count <= (v->c.size - v->c.at) / stride ? io_take(&v->c, count * stride) : NULL;
     io_view view = {bytes, count, stride, components, type, true};
     *out = view;
     return bytes || too_short(v, count, components);
@@ -97,7 +104,7 @@ static bool take_type(vtk *v, io_type *type) {
     return *type != IO_NONE || fail_at(v, "the word before this place is not a type of numbers");
 }
 
-/* ---- Cells -------------------------------------------------------------------------------------------------------------- */
+/* ---- Cells ----------------------------------------------------------------------------------- */
 
 static bool peek_word(const vtk *v, const char *expected) {
     io_cursor ahead = v->c;
@@ -107,15 +114,16 @@ static bool peek_word(const vtk *v, const char *expected) {
 
 static bool expect_typed(vtk *v, const char *keyword, size_t count, io_view *out) {
     io_text word;
-    io_type type;
+    io_type type = IO_NONE;
     if (!peek_word(v, keyword) || !io_take_word(&v->c, &word))
         return fail_at(v, "OFFSETS or CONNECTIVITY is missing here");
     return take_type(v, &type) && take_values(v, type, count, 1, out);
 }
 
-/* After the keyword: n and size; in the new layout n counts the offsets, one more than there are cells. */
+/* After the keyword: n and size; in the new layout n counts the offsets, one more than there are
+ * cells. */
 static bool take_cells(vtk *v, io_cells *cells) {
-    size_t count, size;
+    size_t count = 0, size = 0;
     memset(cells, 0, sizeof *cells);
     if (!take_size(v, &count) || !take_size(v, &size))
         return false;
@@ -124,7 +132,8 @@ static bool take_cells(vtk *v, io_cells *cells) {
         cells->count = count;
         return take_values(v, IO_I32, size, 1, &cells->index);
     }
-    if (!expect_typed(v, "OFFSETS", count, &cells->ends) || !expect_typed(v, "CONNECTIVITY", size, &cells->index))
+    if (!expect_typed(v, "OFFSETS", count, &cells->ends) ||
+        !expect_typed(v, "CONNECTIVITY", size, &cells->index))
         return false;
     if (count) {
         cells->ends.bytes += cells->ends.stride; /* the first offset is 0 */
@@ -134,7 +143,7 @@ static bool take_cells(vtk *v, io_cells *cells) {
     return true;
 }
 
-/* ---- Arrays ------------------------------------------------------------------------------------------------------------ */
+/* ---- Arrays ---------------------------------------------------------------------------------- */
 
 static int hex_digit(char c) {
     const char *digits = "0123456789abcdef0123456789ABCDEF";
@@ -148,7 +157,8 @@ static bool decode_name(vtk *v, io_text *name) {
     size_t size = 0;
     for (size_t i = 0; copy && i < name->size; i++) {
         bool coded = name->at[i] == '%' && i + 2 < name->size;
-        int high = coded ? hex_digit(name->at[i + 1]) : -1, low = coded ? hex_digit(name->at[i + 2]) : -1;
+        int high = coded ? hex_digit(name->at[i + 1]) : -1,
+            low = coded ? hex_digit(name->at[i + 2]) : -1;
         if (high >= 0 && low >= 0)
             i += 2;
         copy[size++] = high >= 0 && low >= 0 ? (char)(high * 16 + low) : name->at[i];
@@ -161,7 +171,8 @@ static bool decode_name(vtk *v, io_text *name) {
 static bool keep_array(vtk *v, io_text name, const io_view *values) {
     if (v->scope == OF_NOTHING)
         return true;
-    array *arrays = io_grow(v->r, v->arrays, &v->array_capacity, v->array_count + 1, sizeof *arrays);
+    array *arrays =
+        io_grow(v->r, v->arrays, &v->array_capacity, v->array_count + 1, sizeof *arrays);
     if (!arrays || !decode_name(v, &name))
         return false;
     v->arrays = arrays;
@@ -170,7 +181,8 @@ static bool keep_array(vtk *v, io_text name, const io_view *values) {
     return true;
 }
 
-/* Strings in binary files: each with its length in front, in 1, 2, 4 or 8 bytes as its top two bits tell. */
+/* Strings in binary files: each with its length in front, in 1, 2, 4 or 8 bytes as its top two bits
+ * tell. */
 static bool skip_strings(vtk *v, size_t count) {
     io_text line;
     for (size_t i = 0; i < count; i++) {
@@ -191,7 +203,9 @@ static bool skip_strings(vtk *v, size_t count) {
     return true;
 }
 
-static bool is_blank_line(io_text line) { return !io_text_trim(line).size; }
+static bool is_blank_line(io_text line) {
+    return !io_text_trim(line).size;
+}
 
 /* Describes the array before it, from the next line on; ended by an empty line. */
 static void skip_metadata(vtk *v) {
@@ -247,6 +261,13 @@ static bool take_field(vtk *v) {
     return true;
 }
 
+static bool skip_words(vtk *v, int count) {
+    io_text word;
+    while (count && io_take_word(&v->c, &word))
+        count--;
+    return !count;
+}
+
 /* SCALARS name type [components], then usually LOOKUP_TABLE name. */
 static bool take_scalars(vtk *v) {
     io_text line, name, type, word;
@@ -262,7 +283,7 @@ static bool take_scalars(vtk *v) {
     if (!peek_word(v, "LOOKUP_TABLE"))
         v->c.at = before - 1; /* back to the line end, where binary numbers are announced */
     else
-        (void)(io_take_word(&v->c, &word) && io_take_word(&v->c, &word));
+        (void)skip_words(v, 2);
     return take_array(v, name, type, components, v->scope_rows);
 }
 
@@ -271,29 +292,32 @@ static bool take_colors(vtk *v) {
     size_t components;
     io_view values;
     return io_take_word(&v->c, &name) && take_size(v, &components) &&
-           take_values(v, IO_U8, v->scope_rows, components, &values) && keep_array(v, name, &values);
+           take_values(v, IO_U8, v->scope_rows, components, &values) &&
+           keep_array(v, name, &values);
 }
 
 static bool skip_table(vtk *v) {
     io_text name;
     size_t rows;
     io_view ignored;
-    return io_take_word(&v->c, &name) && take_size(v, &rows) && take_values(v, IO_U8, rows, 4, &ignored);
+    return io_take_word(&v->c, &name) && take_size(v, &rows) &&
+           take_values(v, IO_U8, rows, 4, &ignored);
 }
 
 /* Name, type, and a fixed number of components; 0 = told before the type. */
 static bool take_named(vtk *v, size_t components) {
     io_text name, type;
-    return io_take_word(&v->c, &name) && (components || take_size(v, &components)) && io_take_word(&v->c, &type) &&
-           take_array(v, name, type, components, v->scope_rows);
+    return io_take_word(&v->c, &name) && (components || take_size(v, &components)) &&
+           io_take_word(&v->c, &type) && take_array(v, name, type, components, v->scope_rows);
 }
 
-/* ---- Sections ----------------------------------------------------------------------------------------------------------- */
+/* ---- Sections -------------------------------------------------------------------------------- */
 
 static bool take_points(vtk *v) {
     size_t count;
     io_type type;
-    return take_size(v, &count) && take_type(v, &type) && take_values(v, type, count, 3, &v->points);
+    return take_size(v, &count) && take_type(v, &type) &&
+           take_values(v, type, count, 3, &v->points);
 }
 
 static bool enter_scope(vtk *v, scope to) {
@@ -354,8 +378,9 @@ static bool take_head(vtk *v) {
     io_text line, word;
     if (!io_sniff_vtk(&v->c))
         return io_fail(v->r, "is not a VTK file: it does not begin with '# vtk DataFile'");
-    bool lines = io_take_line(&v->c, &line) && io_take_line(&v->c, &line);
-    if (!lines || !io_take_word(&v->c, &word))
+    for (int i = 0; i < 2; i++)
+        (void)io_take_line(&v->c, &line);
+    if (!io_take_word(&v->c, &word))
         return io_fail(v->r, "is cut in its head; copy the file again");
     v->binary = io_text_is(word, "BINARY");
     if (!v->binary && !io_text_is(word, "ASCII"))
@@ -366,15 +391,18 @@ static bool take_head(vtk *v) {
     if (!io_take_word(&v->c, &word) || !io_text_is(word, "DATASET") || !io_take_word(&v->c, &word))
         return fail_at(v, "DATASET and its kind must stand here");
     return io_text_is(word, "POLYDATA") ||
-           io_fail(v->r, "holds a %.*s; lines are read from POLYDATA", (int)(word.size < 40 ? word.size : 40), word.at);
+           io_fail(v->r, "holds a %.*s; lines are read from POLYDATA",
+                   (int)(word.size < 40 ? word.size : 40), word.at);
 }
 
 static bool build(vtk *v) {
     io_reader *r = v->r;
     size_t cells = v->vertex_cells + v->lines.count + v->other_cells;
-    if (!v->lines.count && v->other_cells && !io_warn(r, "the file holds %zu polygons, but no lines", v->other_cells))
+    if (!v->lines.count && v->other_cells &&
+        !io_warn(r, "the file holds %zu polygons, but no lines", v->other_cells))
         return false;
-    if (!cells && v->points.count && !io_warn(r, "the file holds %zu points, but no lines", v->points.count))
+    if (!cells && v->points.count &&
+        !io_warn(r, "the file holds %zu points, but no lines", v->points.count))
         return false;
     if (!io_add_cells(r, &v->points, &v->lines, v->vertex_cells))
         return false;
@@ -382,8 +410,9 @@ static bool build(vtk *v) {
         const array *a = &v->arrays[i];
         size_t expected = a->of_points ? v->points.count : cells;
         if (a->values.count != expected &&
-            !io_warn(r, "the array '%.*s' has %zu rows for %zu %s", (int)(a->name.size < 64 ? a->name.size : 64),
-                     a->name.at, a->values.count, expected, a->of_points ? "points" : "cells"))
+            !io_warn(r, "the array '%.*s' has %zu rows for %zu %s",
+                     (int)(a->name.size < 64 ? a->name.size : 64), a->name.at, a->values.count,
+                     expected, a->of_points ? "points" : "cells"))
             return false;
         if (!(a->of_points ? io_attach_points : io_attach_lines)(r, a->name, &a->values))
             return false;

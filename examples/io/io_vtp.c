@@ -1,11 +1,21 @@
-/* VTP: VTK's XML PolyData. expat reads the tags; the numbers are text, base64 or raw bytes, perhaps in zlib blocks. */
+/* VTP: VTK's XML PolyData. expat reads the tags; the numbers are text, base64 or raw bytes, perhaps
+ * in zlib blocks. */
 #include "io_internal.h"
 
 #include <expat.h>
 #include <stdlib.h>
 #include <string.h>
 
-typedef enum section { NOWHERE, POINT_DATA, CELL_DATA, POINTS, VERTS, LINES, STRIPS, POLYS } section;
+typedef enum section {
+    NOWHERE,
+    POINT_DATA,
+    CELL_DATA,
+    POINTS,
+    VERTS,
+    LINES,
+    STRIPS,
+    POLYS
+} section;
 typedef enum encoding { ASCII, BINARY, APPENDED } encoding;
 
 typedef struct array {
@@ -14,8 +24,8 @@ typedef struct array {
     io_type type;
     encoding encoding;
     size_t components;
-    size_t offset;       /* into the appended data */
-    char *text;          /* of ascii and inline binary ones */
+    size_t offset; /* into the appended data */
+    char *text;    /* of ascii and inline binary ones */
     size_t size, capacity;
 } array;
 
@@ -54,7 +64,7 @@ io_match io_sniff_vtp(const io_cursor *bytes) {
     return IO_MAYBE;
 }
 
-/* ---- Tags -------------------------------------------------------------------------------------------------------------- */
+/* ---- Tags ------------------------------------------------------------------------------------ */
 
 static const char *attribute(const XML_Char **attributes, const char *name) {
     for (size_t i = 0; attributes[i]; i += 2)
@@ -74,7 +84,9 @@ static void stop(vtp *v, bool good) {
     XML_StopParser(v->parser, XML_FALSE);
 }
 
-static bool is(const char *text, const char *word) { return text && !strcmp(text, word); }
+static bool is(const char *text, const char *word) {
+    return text && !strcmp(text, word);
+}
 
 static bool begin_file(vtp *v, const XML_Char **attributes) {
     const char *type = attribute(attributes, "type"), *packer = attribute(attributes, "compressor");
@@ -83,26 +95,34 @@ static bool begin_file(vtp *v, const XML_Char **attributes) {
     v->wide = is(attribute(attributes, "header_type"), "UInt64");
     v->zlib = packer && *packer;
     if (!is(type, "PolyData"))
-        return io_fail(v->r, "holds %.40s; lines are read from PolyData (.vtp)", type ? type : "an unknown kind of data");
+        return io_fail(v->r, "holds %.40s; lines are read from PolyData (.vtp)",
+                       type ? type : "an unknown kind of data");
     if (v->zlib && !is(packer, "vtkZLibDataCompressor"))
-        return io_fail(v->r, "is compressed by %.40s; write it with ZLib or without compression", packer);
+        return io_fail(v->r, "is compressed by %.40s; write it with ZLib or without compression",
+                       packer);
     return true;
 }
 
 static bool begin_piece(vtp *v, const XML_Char **attributes) {
-    piece *pieces = io_grow(v->r, v->pieces, &v->piece_capacity, v->piece_count + 1, sizeof *pieces);
+    piece *pieces =
+        io_grow(v->r, v->pieces, &v->piece_capacity, v->piece_count + 1, sizeof *pieces);
     if (!pieces)
         return false;
     v->pieces = pieces;
-    piece next = {number(attributes, "NumberOfPoints", 0), number(attributes, "NumberOfVerts", 0),
-                  number(attributes, "NumberOfLines", 0), number(attributes, "NumberOfStrips", 0),
-                  number(attributes, "NumberOfPolys", 0), v->array_count, v->array_count};
+    piece next = {number(attributes, "NumberOfPoints", 0),
+                  number(attributes, "NumberOfVerts", 0),
+                  number(attributes, "NumberOfLines", 0),
+                  number(attributes, "NumberOfStrips", 0),
+                  number(attributes, "NumberOfPolys", 0),
+                  v->array_count,
+                  v->array_count};
     pieces[v->piece_count++] = next;
     return true;
 }
 
 static bool begin_array(vtp *v, const XML_Char **attributes) {
-    array *arrays = io_grow(v->r, v->arrays, &v->array_capacity, v->array_count + 1, sizeof *arrays);
+    array *arrays =
+        io_grow(v->r, v->arrays, &v->array_capacity, v->array_count + 1, sizeof *arrays);
     const char *name = attribute(attributes, "Name"), *format = attribute(attributes, "format");
     const char *type = attribute(attributes, "type");
     char *label = io_copy_text(v->r, io_text_of(name ? name : "unnamed"));
@@ -124,7 +144,8 @@ static bool begin_array(vtp *v, const XML_Char **attributes) {
 }
 
 static section section_named(const char *name) {
-    static const char *const names[] = {"", "PointData", "CellData", "Points", "Verts", "Lines", "Strips", "Polys"};
+    static const char *const names[] = {"",      "PointData", "CellData", "Points",
+                                        "Verts", "Lines",     "Strips",   "Polys"};
     for (size_t i = 1; i < sizeof names / sizeof names[0]; i++)
         if (!strcmp(name, names[i]))
             return (section)i;
@@ -184,11 +205,13 @@ static void XMLCALL on_text(void *user, const XML_Char *text, int size) {
 
 /* Leaves the appended bytes behind the first _ after the tag. */
 static bool find_appended(vtp *v, const io_cursor *c) {
-    const uint8_t *tag = v->stopped < c->size ? memchr(c->bytes + v->stopped, '>', c->size - v->stopped) : NULL;
+    const uint8_t *tag =
+        v->stopped < c->size ? memchr(c->bytes + v->stopped, '>', c->size - v->stopped) : NULL;
     const uint8_t *end = c->bytes + c->size;
     const uint8_t *mark = tag ? memchr(tag, '_', (size_t)(end - tag)) : NULL;
     if (!mark)
-        return io_fail(v->r, "is cut in its appended data, which must begin with _; copy the file again");
+        return io_fail(v->r,
+                       "is cut in its appended data, which must begin with _; copy the file again");
     v->appended.bytes = mark + 1;
     v->appended.size = (size_t)(end - mark) - 1;
     return true;
@@ -198,7 +221,8 @@ static bool parse(vtp *v, const io_cursor *c) {
     enum { PART = 1 << 20 };
     for (size_t at = 0; at < c->size && !v->failed && !v->stopped; at += PART) {
         size_t size = c->size - at < PART ? c->size - at : PART;
-        enum XML_Status status = XML_Parse(v->parser, (const char *)c->bytes + at, (int)size, at + size == c->size);
+        enum XML_Status status =
+            XML_Parse(v->parser, (const char *)c->bytes + at, (int)size, at + size == c->size);
         if (v->failed || v->stopped)
             break;
         if (status != XML_STATUS_OK)
@@ -211,7 +235,7 @@ static bool parse(vtp *v, const io_cursor *c) {
     return !v->failed && (!v->stopped || find_appended(v, c));
 }
 
-/* ---- Encodings --------------------------------------------------------------------------------------------------------- */
+/* ---- Encodings ------------------------------------------------------------------------------- */
 
 static int base64_value(uint8_t c) {
     if (c >= 'A' && c <= 'Z')
@@ -223,10 +247,12 @@ static int base64_value(uint8_t c) {
     return c == '+' ? 62 : c == '/' ? 63 : -1;
 }
 
-static bool is_space(uint8_t c) { return c == ' ' || c == '\n' || c == '\r' || c == '\t'; }
+static bool is_space(uint8_t c) {
+    return c == ' ' || c == '\n' || c == '\r' || c == '\t';
+}
 
-/* The first wanted bytes of base64 text, or fewer. VTK encodes header and data one after the other, each with padding:
- * going on behind the padding gives their bytes in a row. */
+/* The first wanted bytes of base64 text, or fewer. VTK encodes header and data one after the other,
+ * each with padding: going on behind the padding gives their bytes in a row. */
 static size_t decode_base64(const uint8_t *text, size_t size, uint8_t *out, size_t wanted) {
     size_t got = 0;
     uint32_t bits = 0;
@@ -273,10 +299,12 @@ static uint64_t head_number(const vtp *v, const uint8_t *head, size_t index) {
 }
 
 static bool fail_array(vtp *v, const array *a, const char *what) {
-    return io_fail(v->r, "is damaged in its array '%.64s': %s; copy or write the file again", a->name, what);
+    return io_fail(v->r, "is damaged in its array '%.64s': %s; copy or write the file again",
+                   a->name, what);
 }
 
-/* Compressed: number of blocks, size of a block, size of the last one (0 = full), then the compressed sizes. */
+/* Compressed: number of blocks, size of a block, size of the last one (0 = full), then the
+ * compressed sizes. */
 static const uint8_t *unpack(vtp *v, const array *a, const source *s, size_t needed) {
     size_t word = v->wide ? 8 : 4;
     const uint8_t *head = fetch(v, s, 3 * word);
@@ -302,7 +330,8 @@ static const uint8_t *unpack(vtp *v, const array *a, const source *s, size_t nee
     uint8_t *out = io_alloc(v->r, (size_t)total, 1);
     const uint8_t *from = head + (3 + (size_t)blocks) * word;
     for (size_t i = 0, at = 0; out && i < blocks; i++) {
-        size_t size = (size_t)head_number(v, head, 3 + i), length = (size_t)(i + 1 < blocks ? full : last);
+        size_t size = (size_t)head_number(v, head, 3 + i),
+               length = (size_t)(i + 1 < blocks ? full : last);
         if (!io_inflate(from, size, out + at, length)) {
             fail_array(v, a, "a compressed block does not unpack to its size");
             return NULL;
@@ -321,7 +350,8 @@ static bool take_text(vtp *v, const array *a, size_t rows, io_view *out) {
     for (size_t i = 0; values && i < rows * a->components; i++) {
         io_text word;
         if (!io_take_word(&words, &word) || !io_parse_real(word, &values[i]))
-            return fail_array(v, a, "it has fewer numbers than its size needs, or a word among them");
+            return fail_array(v, a,
+                              "it has fewer numbers than its size needs, or a word among them");
     }
     if (values)
         *out = io_view_doubles(values, rows, (uint32_t)a->components);
@@ -352,7 +382,8 @@ static bool take_array(vtp *v, const array *a, size_t rows, io_view *out) {
     } else {
         bytes = fetch(v, &s, word);
         uint64_t size = bytes ? head_number(v, bytes, 0) : 0;
-        if (!bytes || size < rows * stride || size > s.size || !(bytes = fetch(v, &s, word + rows * stride)))
+        if (!bytes || size < rows * stride || size > s.size ||
+            !(bytes = fetch(v, &s, word + rows * stride)))
             return fail_array(v, a, "it has fewer bytes than its size needs");
         bytes += word;
     }
@@ -361,7 +392,7 @@ static bool take_array(vtp *v, const array *a, size_t rows, io_view *out) {
     return true;
 }
 
-/* ---- Pieces ------------------------------------------------------------------------------------------------------------- */
+/* ---- Pieces ---------------------------------------------------------------------------------- */
 
 static const array *find(const vtp *v, const piece *p, section in, const char *name) {
     for (size_t i = p->first; i < p->last; i++)
@@ -381,7 +412,8 @@ static bool add_lines(vtp *v, const piece *p) {
     io_cells cells;
     memset(&cells, 0, sizeof cells);
     if (!is_numeric(ends, 1) || !is_numeric(indices, 1) || (p->points && !is_numeric(points, 3)))
-        return io_fail(v->r, "lacks the arrays Points, offsets or connectivity of its %zu lines", p->lines);
+        return io_fail(v->r, "lacks the arrays Points, offsets or connectivity of its %zu lines",
+                       p->lines);
     if (p->points && !take_array(v, points, p->points, &at))
         return false;
     if (!p->points)
@@ -403,8 +435,8 @@ static bool add_attributes(vtp *v, const piece *p) {
         if ((!of_points && a->section != CELL_DATA) || a->type == IO_NONE)
             continue;
         if (!a->components || a->components > IO_MAX_COMPONENTS) {
-            if (!io_warn(v->r, "the array '%.64s' has %zu values per row; only 1 to %d are read", a->name,
-                         a->components, IO_MAX_COMPONENTS))
+            if (!io_warn(v->r, "the array '%.64s' has %zu values per row; only 1 to %d are read",
+                         a->name, a->components, IO_MAX_COMPONENTS))
                 return false;
             continue;
         }
@@ -450,7 +482,7 @@ bool io_read_vtp(io_reader *r, io_cursor *bytes) {
     return parsed && build(&v);
 }
 
-/* ---- Writing ------------------------------------------------------------------------------------------------------------- */
+/* ---- Writing --------------------------------------------------------------------------------- */
 
 static void put_name(FILE *file, const char *name) {
     for (; *name; name++) {
@@ -462,25 +494,26 @@ static void put_name(FILE *file, const char *name) {
 }
 
 /* One tag for each array; the offsets are those at which put_data writes. */
-static void put_tag(FILE *file, const char *type, const char *name, uint32_t components, uint64_t bytes,
-                    uint64_t *offset) {
+static void put_tag(FILE *file, const char *type, const char *name, uint32_t components,
+                    uint64_t bytes, uint64_t *offset) {
     fprintf(file, "<DataArray type=\"%s\" Name=\"", type);
     put_name(file, name);
-    fprintf(file, "\" NumberOfComponents=\"%lu\" format=\"appended\" offset=\"%llu\"/>\n", (unsigned long)components,
-            (unsigned long long)*offset);
+    fprintf(file, "\" NumberOfComponents=\"%lu\" format=\"appended\" offset=\"%llu\"/>\n",
+            (unsigned long)components, (unsigned long long)*offset);
     *offset += 8 + bytes;
 }
 
-static void put_attribute_tags(FILE *file, const char *tag, const io_attribute *attributes, uint32_t count,
-                               uint64_t rows, uint64_t *offset) {
+static void put_attribute_tags(FILE *file, const char *tag, const io_attribute *attributes,
+                               uint32_t count, uint64_t rows, uint64_t *offset) {
     fprintf(file, "<%s>\n", tag);
     for (uint32_t i = 0; i < count; i++)
-        put_tag(file, "Float32", attributes[i].name, attributes[i].components, 4 * rows * attributes[i].components,
-                offset);
+        put_tag(file, "Float32", attributes[i].name, attributes[i].components,
+                4 * rows * attributes[i].components, offset);
     fprintf(file, "</%s>\n", tag);
 }
 
-static void put_attributes(FILE *file, const io_attribute *attributes, uint32_t count, uint64_t rows) {
+static void put_attributes(FILE *file, const io_attribute *attributes, uint32_t count,
+                           uint64_t rows) {
     for (uint32_t i = 0; i < count; i++) {
         uint64_t values = rows * attributes[i].components;
         io_put_u64(file, 4 * values);
@@ -504,17 +537,23 @@ static void put_data(FILE *file, const io_lines *lines, bool wide) {
         io_put_u64(file, lines->offsets[i + 1]);
 }
 
-/* Appended raw arrays; positions are doubles where an origin had been taken off, for that is where floats are too coarse. */
+/* Appended raw arrays; positions are doubles where an origin had been taken off, for that is where
+ * floats are too coarse. */
 bool io_write_vtp(FILE *file, const io_lines *lines, io_error *error) {
     (void)error;
     bool wide = lines->origin[0] != 0 || lines->origin[1] != 0 || lines->origin[2] != 0;
     uint64_t offset = 0, points = lines->point_count, count = lines->line_count;
-    fprintf(file, "<?xml version=\"1.0\"?>\n<VTKFile type=\"PolyData\" version=\"1.0\" byte_order=\"LittleEndian\" "
-                  "header_type=\"UInt64\">\n<PolyData>\n<Piece NumberOfPoints=\"%llu\" NumberOfVerts=\"0\" "
-                  "NumberOfLines=\"%llu\" NumberOfStrips=\"0\" NumberOfPolys=\"0\">\n",
-            (unsigned long long)points, (unsigned long long)count);
-    put_attribute_tags(file, "PointData", lines->point_attributes, lines->point_attribute_count, points, &offset);
-    put_attribute_tags(file, "CellData", lines->line_attributes, lines->line_attribute_count, count, &offset);
+    fprintf(
+        file,
+        "<?xml version=\"1.0\"?>\n<VTKFile type=\"PolyData\" version=\"1.0\" "
+        "byte_order=\"LittleEndian\" "
+        "header_type=\"UInt64\">\n<PolyData>\n<Piece NumberOfPoints=\"%llu\" NumberOfVerts=\"0\" "
+        "NumberOfLines=\"%llu\" NumberOfStrips=\"0\" NumberOfPolys=\"0\">\n",
+        (unsigned long long)points, (unsigned long long)count);
+    put_attribute_tags(file, "PointData", lines->point_attributes, lines->point_attribute_count,
+                       points, &offset);
+    put_attribute_tags(file, "CellData", lines->line_attributes, lines->line_attribute_count, count,
+                       &offset);
     fputs("<Points>\n", file);
     put_tag(file, wide ? "Float64" : "Float32", "Points", 3, points * (wide ? 24 : 12), &offset);
     fputs("</Points>\n<Lines>\n", file);

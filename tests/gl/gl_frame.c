@@ -3,7 +3,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* ------------------------------------------------------------------------------------------ shaders */
+/* -------------------------------------------------------------------------------------- shaders */
 
 static const char *const lines_vertex[] = {
     "uniform samplerBuffer t_points;\n",
@@ -34,7 +34,8 @@ static const char *const over_fragment[] = {
     "void main() {\n",
     "    ivec2 at = ivec2(gl_FragCoord.xy);\n",
     "    float d = texelFetch(t_depth, at, 0).x + texelFetch(t_nothing, at, 0).x;\n",
-    "    t_out = vec4(d * 0.25 * float(lao_constant_scale), 0.125, 0.0, 0.5);\n",
+    "    float uniforms = lao_frame.target.x + lao_settings_rows[1].x + lao_step.size.z;\n",
+    "    t_out = vec4(d * 0.25 * float(lao_constant_scale), uniforms, 0.0, 0.5);\n",
     "}\n"};
 static const char *const history_fragment[] = {
     "uniform sampler2D t_color;\n",
@@ -46,11 +47,9 @@ static const char *const history_fragment[] = {
     "    t_out = texelFetch(t_color, at, 0) + 0.5 * texelFetch(t_before, at, 0);\n",
     "    t_out.w += texelFetch(t_depth, at, 0).x;\n",
     "}\n"};
-static const char *const depth_fragment[] = {"uniform sampler2D t_depth;\n",
-                                             "void main() {\n",
-                                             "    ivec2 at = ivec2(gl_FragCoord.xy);\n",
-                                             "    gl_FragDepth = 1.0 - texelFetch(t_depth, at, 0).x;\n",
-                                             "}\n"};
+static const char *const depth_fragment[] = {
+    "uniform sampler2D t_depth;\n", "void main() {\n", "    ivec2 at = ivec2(gl_FragCoord.xy);\n",
+    "    gl_FragDepth = 1.0 - texelFetch(t_depth, at, 0).x;\n", "}\n"};
 static const char *const present_fragment[] = {"uniform sampler2D t_image;\n",
                                                "layout(location = 0) out vec4 t_out;\n",
                                                "void main() {\n",
@@ -65,8 +64,10 @@ static const char *const present_names[] = {"t_image"};
 static const char *const over_constants[] = {"scale"};
 static const lao_texture_type buffers[] = {LAO_TEXTURE_BUFFER, LAO_TEXTURE_BUFFER};
 static const lao_texture_type images[] = {LAO_TEXTURE_2D, LAO_TEXTURE_2D, LAO_TEXTURE_2D};
-#define STAGE(lines) {lines, sizeof lines / sizeof *lines, NULL, 0}
-#define NO_STAGE {NULL, 0, NULL, 0}
+#define STAGE(lines)                                                                               \
+    { lines, sizeof lines / sizeof *lines, NULL, 0 }
+#define NO_STAGE                                                                                   \
+    { NULL, 0, NULL, 0 }
 static const lao_shader shaders[GL_FRAME_STEPS] = {
     {"t_lines", NULL, 0, line_names, buffers, 2, 3, STAGE(lines_vertex), STAGE(lines_fragment)},
     {"t_over", over_constants, 1, over_names, images, 2, 1, NO_STAGE, STAGE(over_fragment)},
@@ -78,19 +79,64 @@ const lao_shader *const gl_frame_shaders[GL_FRAME_STEPS] = {&shaders[0], &shader
                                                             &shaders[3], &shaders[4]};
 
 static const lao_pass_row rows[GL_FRAME_STEPS] = {
-    {"lines", LAO_PASS_DRAW_LINES, "t_lines", LAO_SCOPE_PER_SET, LAO_REPEAT_NONE, NULL,
-     LAO_BLEND_NONE, LAO_DEPTH_NEARER, {{0}}, {{0}}, {{0}}},
-    {"over", LAO_PASS_FULLSCREEN, "t_over", LAO_SCOPE_FRAME, LAO_REPEAT_NONE, NULL, LAO_BLEND_OVER,
-     LAO_DEPTH_NONE, {{0}}, {{0}}, {{0}}},
-    {"history", LAO_PASS_FULLSCREEN, "t_history", LAO_SCOPE_FRAME, LAO_REPEAT_NONE, NULL,
-     LAO_BLEND_NONE, LAO_DEPTH_NONE, {{0}}, {{0}}, {{0}}},
-    {"depth", LAO_PASS_FULLSCREEN, "t_depth", LAO_SCOPE_FRAME, LAO_REPEAT_NONE, NULL,
-     LAO_BLEND_NONE, LAO_DEPTH_ALWAYS, {{0}}, {{0}}, {{0}}},
-    {"present", LAO_PASS_FULLSCREEN, "t_present", LAO_SCOPE_FRAME, LAO_REPEAT_NONE, NULL,
-     LAO_BLEND_ADD, LAO_DEPTH_NONE, {{0}}, {{0}}, {{0}}},
+    {"lines",
+     LAO_PASS_DRAW_LINES,
+     "t_lines",
+     LAO_SCOPE_PER_SET,
+     LAO_REPEAT_NONE,
+     NULL,
+     LAO_BLEND_NONE,
+     LAO_DEPTH_NEARER,
+     {{0}},
+     {{0}},
+     {{0}}},
+    {"over",
+     LAO_PASS_FULLSCREEN,
+     "t_over",
+     LAO_SCOPE_FRAME,
+     LAO_REPEAT_NONE,
+     NULL,
+     LAO_BLEND_OVER,
+     LAO_DEPTH_NONE,
+     {{0}},
+     {{0}},
+     {{0}}},
+    {"history",
+     LAO_PASS_FULLSCREEN,
+     "t_history",
+     LAO_SCOPE_FRAME,
+     LAO_REPEAT_NONE,
+     NULL,
+     LAO_BLEND_NONE,
+     LAO_DEPTH_NONE,
+     {{0}},
+     {{0}},
+     {{0}}},
+    {"depth",
+     LAO_PASS_FULLSCREEN,
+     "t_depth",
+     LAO_SCOPE_FRAME,
+     LAO_REPEAT_NONE,
+     NULL,
+     LAO_BLEND_NONE,
+     LAO_DEPTH_ALWAYS,
+     {{0}},
+     {{0}},
+     {{0}}},
+    {"present",
+     LAO_PASS_FULLSCREEN,
+     "t_present",
+     LAO_SCOPE_FRAME,
+     LAO_REPEAT_NONE,
+     NULL,
+     LAO_BLEND_ADD,
+     LAO_DEPTH_NONE,
+     {{0}},
+     {{0}},
+     {{0}}},
 };
 
-/* --------------------------------------------------------------------------------------------- core */
+/* ----------------------------------------------------------------------------------------- core */
 
 static void *core_allocate(void *user, size_t size) {
     gl_frame_core *core = (gl_frame_core *)user;
@@ -120,10 +166,12 @@ void gl_frame_core_init(gl_frame_core *core) {
     core->host.allocator.user = core;
     core->host.report = core_report;
     core->host.context = core;
-    core->host.settings_size = 1024;
+    core->host.settings_size = GL_FRAME_SETTINGS * sizeof(float);
+    core->host.graph = &core->graph;
+    core->graph.module_count = GL_FRAME_MODULES;
 }
 
-/* --------------------------------------------------------------------------------------------- plan */
+/* ----------------------------------------------------------------------------------------- plan */
 
 static void instance(gl_frame *frame, uint32_t index, uint32_t size, uint32_t even, uint32_t odd) {
     lao_plan_instance *it = &frame->instances[index];
@@ -134,6 +182,24 @@ static void instance(gl_frame *frame, uint32_t index, uint32_t size, uint32_t ev
 }
 
 enum { COLOR, LINEAR_DEPTH, DEPTH, NOW, BEFORE, TARGET }; /* instances */
+
+/* The pass "over" adds three numbers, one of each block, to 1 / 8; everywhere else stands a 9. */
+static void uniforms(gl_frame *frame) {
+    lao_frame_uniforms *of_frame = &frame->frame_uniforms;
+    uint32_t i;
+    for (i = 0; i < GL_FRAME_SETS * GL_FRAME_MODULES * GL_FRAME_SETTINGS; i++)
+        frame->settings[i] = 9;
+    frame->settings[(1 * GL_FRAME_MODULES + 1) * GL_FRAME_SETTINGS + 4] = 1 / 32.0f;
+    of_frame->target.x = 1 / 16.0f;
+    for (i = 0; i < GL_FRAME_STEPS; i++)
+        frame->steps[i].uniforms[2] = i == 1 ? 1 / 32.0f : 9;
+    frame->steps[1].set = 1;
+    frame->steps[1].module = 1;
+    frame->execution.frame_uniforms = of_frame;
+    frame->execution.frame_size = sizeof *of_frame;
+    frame->execution.set_uniforms = frame->settings;
+    frame->execution.set_count = GL_FRAME_SETS;
+}
 
 static lao_plan_step *step(gl_frame *frame, uint32_t index, uint32_t size, uint32_t color) {
     lao_plan_step *it = &frame->steps[index];
@@ -155,9 +221,9 @@ static void reads(lao_plan_step *it, uint32_t count, uint32_t a, uint32_t b, uin
 }
 
 void gl_frame_init(gl_frame *frame, uint32_t size) {
-    static const lao_format formats[GL_FRAME_SLOTS] = {
-        LAO_FORMAT_RGBA16F, LAO_FORMAT_R32F, LAO_FORMAT_D32F, LAO_FORMAT_RGBA32F, LAO_FORMAT_RGBA32F};
-    static const float frame_uniforms[1024] = {0}, set_uniforms[256] = {0};
+    static const lao_format formats[GL_FRAME_SLOTS] = {LAO_FORMAT_RGBA16F, LAO_FORMAT_R32F,
+                                                       LAO_FORMAT_D32F, LAO_FORMAT_RGBA32F,
+                                                       LAO_FORMAT_RGBA32F};
     lao_plan_step *it;
     uint32_t i;
     memset(frame, 0, sizeof *frame);
@@ -195,14 +261,11 @@ void gl_frame_init(gl_frame *frame, uint32_t size) {
     frame->plan.instance_count = GL_FRAME_INSTANCES;
     frame->plan.slots = frame->slots;
     frame->plan.slot_count = GL_FRAME_SLOTS;
-    frame->draw.chunks = &frame->chunk;
-    frame->draw.chunk_count = 1;
+    frame->draws[0].chunks = &frame->chunk;
+    frame->draws[0].chunk_count = 1;
     frame->execution.plan = &frame->plan;
-    frame->execution.frame_uniforms = frame_uniforms;
-    frame->execution.frame_size = sizeof frame_uniforms;
-    frame->execution.set_uniforms = set_uniforms;
-    frame->execution.draws = &frame->draw;
-    frame->execution.set_count = 1;
+    frame->execution.draws = frame->draws;
+    uniforms(frame);
 }
 
 lao_result gl_frame_lines_create(gl_frame *frame, const lao_backend *backend, void *self) {

@@ -1,15 +1,25 @@
-/* A tiny frame through the seam, written by hand so that executors are tested without any effect: all kinds of passes,
-   formats, tests, blends, clears, history, a hole among the outputs, a missing input and a target of the host. */
+/* A tiny frame through the seam, written by hand so that executors are tested without any effect:
+   all kinds of passes, formats, tests, blends, clears, history, a hole among the outputs, a missing
+   input and a target of the host. */
 #ifndef GL_FRAME_H
 #define GL_FRAME_H
 
 #include "lineao.h"
 
-enum { GL_FRAME_SIZE = 24, GL_FRAME_STEPS = 5, GL_FRAME_SLOTS = 5, GL_FRAME_INSTANCES = 7 };
+enum {
+    GL_FRAME_SIZE = 24,
+    GL_FRAME_STEPS = 5,
+    GL_FRAME_SLOTS = 5,
+    GL_FRAME_INSTANCES = 6,
+    GL_FRAME_SETS = 2,
+    GL_FRAME_MODULES = 2,
+    GL_FRAME_SETTINGS = 256 /* floats of a block: as many as any shader wants */
+};
 
 /* What the core would be: allocator with fault injection, log. */
 typedef struct gl_frame_core {
     lao_host host;
+    lao_graph graph;     /* its number of modules */
     int fail_allocation; /* the n-th fails; 0: none */
     int allocations, logs;
     long bytes; /* alive */
@@ -23,8 +33,10 @@ typedef struct gl_frame {
     lao_plan_instance instances[GL_FRAME_INSTANCES];
     lao_plan_slot slots[GL_FRAME_SLOTS];
     lao_execution execution;
-    lao_draw draw;
+    lao_draw draws[GL_FRAME_SETS];
     lao_chunk chunk;
+    lao_frame_uniforms frame_uniforms;
+    float settings[GL_FRAME_SETS * GL_FRAME_MODULES * GL_FRAME_SETTINGS];
 } gl_frame;
 
 extern const lao_shader *const gl_frame_shaders[GL_FRAME_STEPS];

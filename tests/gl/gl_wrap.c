@@ -15,10 +15,11 @@ struct gl_wrap gl_wrap;
 
 static host_gl *host;
 
-/* A function of the driver; ISO C has no cast from data to functions, POSIX promises the same bits. */
+/* A function of the driver; ISO C has no cast from data to functions, POSIX promises the same bits.
+ */
 #define DRIVER(type, function, name)                                                               \
     type function;                                                                                 \
-    void *function##_data = host_gl_get_proc(name, NULL);                                                          \
+    void *function##_data = host_gl_get_proc(name, NULL);                                          \
     memcpy(&function, &function##_data, sizeof function)
 
 void gl_wrap_reset(void) {
@@ -34,7 +35,7 @@ static int fails(GLenum what) {
     return 1;
 }
 
-/* ------------------------------------------------------------------------------ calls that can fail */
+/* -------------------------------------------------------------------------- calls that can fail */
 
 static GLenum APIENTRY get_error(void) {
     DRIVER(PFNGLGETERRORPROC, real, "glGetError");
@@ -151,7 +152,7 @@ static void APIENTRY delete_program(GLuint program) {
     real(program);
 }
 
-/* ----------------------------------------------------------------------------------- what there is */
+/* -------------------------------------------------------------------------------- what there is */
 
 static void APIENTRY get_integer_v(GLenum what, GLint *values) {
     DRIVER(PFNGLGETINTEGERVPROC, real, "glGetIntegerv");
@@ -166,8 +167,9 @@ static void APIENTRY get_integer_v(GLenum what, GLint *values) {
 }
 
 static const char *const missing_at_the_floor[] = {
-    "glBlendEquationSeparatei", "glBlendFuncSeparatei", "glClipControl",         "glDepthRangeIndexed",
-    "glGetDoublei_v",           "glViewportIndexedf",   "glGetGraphicsResetStatus"};
+    "glBlendEquationSeparatei", "glBlendFuncSeparatei", "glClipControl",
+    "glDepthRangeIndexed",      "glGetDoublei_v",       "glViewportIndexedf",
+    "glGetGraphicsResetStatus"};
 
 typedef void (*any_function)(void);
 static const struct {
@@ -205,7 +207,8 @@ void *gl_wrap_proc(const char *name, void *user) {
     size_t i;
     if (++gl_wrap.procs == gl_wrap.fail_proc)
         return NULL;
-    for (i = 0; gl_wrap.floor && i < sizeof missing_at_the_floor / sizeof *missing_at_the_floor; i++)
+    for (i = 0; gl_wrap.floor && i < sizeof missing_at_the_floor / sizeof *missing_at_the_floor;
+         i++)
         if (strcmp(name, missing_at_the_floor[i]) == 0)
             return NULL;
     for (i = 0; i < sizeof wrapped / sizeof *wrapped; i++)

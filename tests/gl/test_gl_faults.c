@@ -1,5 +1,6 @@
-/* Proves: whatever the driver, the loader or the allocator refuses, the OpenGL executor returns an error, logs exactly one
-   item, leaks nothing and can go on; and the floor, OpenGL 3.3 without extensions, draws the same picture. */
+/* Proves: whatever the driver, the loader or the allocator refuses, the OpenGL executor returns an
+   error, logs exactly one item, leaks nothing and can go on; and the floor, OpenGL 3.3 without
+   extensions, draws the same picture. */
 #include "gl_frame.h"
 #include "gl_wrap.h"
 
@@ -25,8 +26,9 @@ static lao_backend make_backend(void) {
     return backend;
 }
 
-/* One life of the executor, up to the first failure: buffers, two views' worth of preparing, three frames, reading.
-   `picture` receives the history image. The present step has no target here and is left out. */
+/* One life of the executor, up to the first failure: buffers, two views' worth of preparing, three
+   frames, reading. `picture` receives the history image. The present step has no target here and is
+   left out. */
 static lao_result live(gl_frame_core *core, float picture[PIXELS * 4]) {
     lao_backend backend = make_backend();
     lao_backend_caps caps;
@@ -135,14 +137,15 @@ static void every_function_may_be_missing(void **state) {
     static float picture[PIXELS * 4];
     gl_frame_core core;
     lao_result result;
-    int n, optional = 0, procs = 1;
+    int n, optional = 0, procs;
     (void)state;
+    check_health(NULL);
+    procs = gl_wrap.procs;
     for (n = 1; n <= procs; n++) {
         gl_wrap_reset();
         gl_wrap.fail_proc = n;
         gl_frame_core_init(&core);
         result = live(&core, picture);
-        procs = gl_wrap.procs > procs ? gl_wrap.procs : procs;
         optional += !result;
         assert_true(result == LAO_OK || result == LAO_ERROR_UNSUPPORTED);
         assert_int_equal(core.logs, result != LAO_OK);
@@ -152,7 +155,7 @@ static void every_function_may_be_missing(void **state) {
         }
         check_balance(&core);
     }
-    assert_true(procs > 70);
+    assert_true(procs > 60);
     assert_true(optional > 0 && optional < 10);
     check_health(NULL);
 }
@@ -244,7 +247,7 @@ static void real_lack_of_device_memory_leaves_an_empty_view(void **state) {
         print_message("the driver has 4 GiB to spare\n");
     }
     assert_int_equal(backend.view_prepare(self, view, &frame.plan, gl_frame_shaders), LAO_OK);
-    frame.draw.chunk_count = 0; /* a set without lines */
+    frame.draws[0].chunk_count = 0; /* a set without lines */
     assert_int_equal(backend.execute(self, view, &frame.execution), LAO_OK);
     backend.view_destroy(self, view);
     backend.detach(self);

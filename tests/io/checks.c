@@ -32,7 +32,9 @@ bool has_warning(const io_lines *lines, const char *word) {
     return false;
 }
 
-static void assert_near(double a, double b) { assert_true(a - b < 1e-6 && b - a < 1e-6); }
+static void assert_near(double a, double b) {
+    assert_true(a - b < 1e-6 && b - a < 1e-6);
+}
 
 void assert_sample(const io_lines *lines, bool attributes, bool groups) {
     assert_int_equal(lines->line_count, SAMPLE_LINES);
@@ -40,7 +42,8 @@ void assert_sample(const io_lines *lines, bool attributes, bool groups) {
     assert_memory_equal(lines->offsets, sample_offsets, sizeof sample_offsets);
     for (size_t k = 0; k < SAMPLE_POINTS; k++)
         for (unsigned axis = 0; axis < 3; axis++)
-            assert_near((double)lines->points[3 * k + axis] + lines->origin[axis], sample_position(k, axis));
+            assert_near((double)lines->points[3 * k + axis] + lines->origin[axis],
+                        sample_position(k, axis));
     assert_int_equal(lines->warning_count, 0);
     if (attributes) {
         const io_attribute *s = point_attribute(lines, "s"), *v = point_attribute(lines, "v");

@@ -1,4 +1,5 @@
-/* The same small line set in every format and encoding, made in memory: for tests and as seeds of the fuzzer. */
+/* The same small line set in every format and encoding, made in memory: for tests and as seeds of
+ * the fuzzer. */
 #ifndef LINEAO_IO_SAMPLES_H
 #define LINEAO_IO_SAMPLES_H
 
@@ -27,13 +28,14 @@ void put_base64(buffer *b, const void *data, size_t size);
 buffer gzip_of(const buffer *b);
 buffer zlib_of(const buffer *b);
 
-/* Three lines of 1, 2 and 5 points. Steps are whole 1/32 and at most 2, so that every encoding is exact. */
+/* Three lines of 1, 2 and 5 points. Steps are whole 1/32 and at most 2, so that every encoding is
+ * exact. */
 enum { SAMPLE_LINES = 3, SAMPLE_POINTS = 8 };
 extern const uint32_t sample_offsets[SAMPLE_LINES + 1];
 double sample_position(size_t point, unsigned axis);
-double sample_scalar(size_t point);               /* point attribute "s" */
+double sample_scalar(size_t point);                /* point attribute "s" */
 double sample_vector(size_t point, unsigned axis); /* point attribute "v" */
-double sample_weight(size_t line);                /* line attribute "w" */
+double sample_weight(size_t line);                 /* line attribute "w" */
 
 typedef struct sample {
     const char *name; /* with the extension of its format */
@@ -43,6 +45,7 @@ typedef struct sample {
 } sample;
 extern const sample samples[];
 extern const size_t sample_count;
+buffer make_sample(const char *name);
 
 /* TRK with the given byte order and n_count; identity affine, half a voxel added. */
 buffer make_trk(bool big, uint32_t count);
@@ -59,7 +62,8 @@ buffer make_zip(zip_item *items, size_t count, bool deflate); /* frees the conte
 void assert_sample(const io_lines *lines, bool attributes, bool groups);
 /* Reads memory, asserting success; the text of a failure is printed. */
 io_lines must_read(const buffer *b, const char *name, const io_options *options);
-/* Reads memory, asserting failure with a text that contains each word (NULL = any); out must stay untouched. */
+/* Reads memory, asserting failure with a text that contains each word (NULL = any); out must stay
+ * untouched. */
 void must_fail(const buffer *b, const char *name, const io_options *options, const char *word);
 bool has_warning(const io_lines *lines, const char *word);
 const io_attribute *point_attribute(const io_lines *lines, const char *name);

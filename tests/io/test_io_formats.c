@@ -19,7 +19,8 @@ static void assert_point(const io_lines *lines, size_t point, double x, double y
     const double expected[3] = {x, y, z};
     for (unsigned axis = 0; axis < 3; axis++)
         if (!(fabs(position(lines, point, axis) - expected[axis]) < 1e-4))
-            fail_msg("point %zu axis %u is %g, not %g", point, axis, position(lines, point, axis), expected[axis]);
+            fail_msg("point %zu axis %u is %g, not %g", point, axis, position(lines, point, axis),
+                     expected[axis]);
 }
 
 static io_lines read_text(const char *text, const char *name) {
@@ -37,9 +38,10 @@ static void fail_text(const char *text, const char *word) {
     buffer_free(&b);
 }
 
-/* ---- TRK ----------------------------------------------------------------------------------------- */
+/* ---- TRK ------------------------------------------------------------------------------------- */
 
-/* voxel mm -> RAS by hand: header order LPS, matrix RAS, voxels of 1 3 2 mm in a 4 x 5 x 7 volume. */
+/* voxel mm -> RAS by hand: header order LPS, matrix RAS, voxels of 1 3 2 mm in a 4 x 5 x 7 volume.
+ */
 static void trk_voxel_order_flips(void **state) {
     (void)state;
     buffer b = make_trk(false, SAMPLE_LINES);
@@ -54,13 +56,16 @@ static void trk_voxel_order_flips(void **state) {
     memcpy(b.data + 948, "LPS", 3);
     io_lines lines = must_read(&b, NULL, NULL);
     for (size_t k = 0; k < SAMPLE_POINTS; k++) {
-        double x = sample_position(k, 0) + 0.5, y = sample_position(k, 1) + 0.5, z = sample_position(k, 2) + 0.5;
-        assert_point(&lines, k, 100 + 1 * (3 - (x / 1 - 0.5)), 100 + 3 * (4 - (y / 3 - 0.5)), 100 + 2 * (z / 2 - 0.5));
+        double x = sample_position(k, 0) + 0.5, y = sample_position(k, 1) + 0.5,
+               z = sample_position(k, 2) + 0.5;
+        assert_point(&lines, k, 100 + 1 * (3 - (x / 1 - 0.5)), 100 + 3 * (4 - (y / 3 - 0.5)),
+                     100 + 2 * (z / 2 - 0.5));
     }
     io_lines_free(&lines);
     memset(b.data + 948, 0, 4); /* no order means LPS */
     lines = must_read(&b, NULL, NULL);
-    assert_point(&lines, 0, 100 + 3 - (sample_position(0, 0)), 100 + 3 * (4 - ((sample_position(0, 1) + 0.5) / 3 - 0.5)),
+    assert_point(&lines, 0, 100 + 3 - (sample_position(0, 0)),
+                 100 + 3 * (4 - ((sample_position(0, 1) + 0.5) / 3 - 0.5)),
                  100 + 2 * ((sample_position(0, 2) + 0.5) / 2 - 0.5));
     assert_int_equal(lines.warning_count, 0);
     io_lines_free(&lines);
@@ -82,7 +87,8 @@ static void trk_voxel_order_permutes(void **state) {
     memcpy(b.data + 948, "ARS", 3);
     io_lines lines = must_read(&b, NULL, NULL);
     for (size_t k = 0; k < SAMPLE_POINTS; k++)
-        assert_point(&lines, k, sample_position(k, 1), sample_position(k, 0), sample_position(k, 2));
+        assert_point(&lines, k, sample_position(k, 1), sample_position(k, 0),
+                     sample_position(k, 2));
     io_lines_free(&lines);
     buffer_free(&b);
 }
@@ -92,7 +98,8 @@ static void trk_half_voxel_is_an_option(void **state) {
     buffer b = make_trk(false, SAMPLE_LINES);
     io_options options = {.trk_no_half_voxel = true};
     io_lines lines = must_read(&b, NULL, &options);
-    assert_point(&lines, 0, sample_position(0, 0) + 0.5, sample_position(0, 1) + 0.5, sample_position(0, 2) + 0.5);
+    assert_point(&lines, 0, sample_position(0, 0) + 0.5, sample_position(0, 1) + 0.5,
+                 sample_position(0, 2) + 0.5);
     io_lines_free(&lines);
     buffer_free(&b);
 }
@@ -109,7 +116,8 @@ static void trk_without_matrix_stays_in_voxels(void **state) {
             patch_f32(&b, 440 + 20, NAN);
         io_lines lines = must_read(&b, NULL, NULL);
         assert_true(has_warning(&lines, "vox_to_ras"));
-        assert_point(&lines, 0, sample_position(0, 0), sample_position(0, 1), sample_position(0, 2));
+        assert_point(&lines, 0, sample_position(0, 0), sample_position(0, 1),
+                     sample_position(0, 2));
         io_lines_free(&lines);
         buffer_free(&b);
     }
@@ -123,7 +131,8 @@ static void trk_voxel_size_zero_is_guarded(void **state) {
         patch_f32(&b, 16, sizes[i]);
         io_lines lines = must_read(&b, NULL, NULL);
         assert_true(has_warning(&lines, "voxel_size"));
-        assert_point(&lines, 7, sample_position(7, 0), sample_position(7, 1), sample_position(7, 2));
+        assert_point(&lines, 7, sample_position(7, 0), sample_position(7, 1),
+                     sample_position(7, 2));
         io_lines_free(&lines);
         buffer_free(&b);
     }
@@ -158,7 +167,7 @@ static void trk_counts(void **state) {
 static void trk_points_not_finite_are_dropped(void **state) {
     (void)state;
     buffer b = make_trk(false, SAMPLE_LINES);
-    patch_f32(&b, 1004, NAN);               /* the only point of line 0 */
+    patch_f32(&b, 1004, NAN);                   /* the only point of line 0 */
     patch_f32(&b, 1004 + 28 + 4 + 4, INFINITY); /* the first of line 1 */
     io_lines lines = must_read(&b, NULL, NULL);
     assert_int_equal(lines.line_count, 2);
@@ -186,7 +195,7 @@ static void trk_unnamed_scalars_are_kept(void **state) {
     buffer_free(&b);
 }
 
-/* ---- TCK ----------------------------------------------------------------------------------------- */
+/* ---- TCK ------------------------------------------------------------------------------------- */
 
 static buffer tck_of(const char *head, size_t offset, const double *values, size_t count) {
     buffer b = {0};
@@ -206,10 +215,12 @@ static void tck_offset_rules(void **state) {
         const char *head, *warning; /* NULL: none */
     } heads[] = {
         {"mrtrix tracks\ndatatype: Float32LE\nfile: . 100\nEND\n", NULL},
-        {"mrtrix tracks\ndatatype: Float32LE\nfile: . 100\nEND ", NULL}, /* a blank, not a line end */
+        {"mrtrix tracks\ndatatype: Float32LE\nfile: . 100\nEND ",
+         NULL}, /* a blank, not a line end */
         {"mrtrix tracks    \r\ndatatype: Float32LE\r\nfile: . 100\r\nEND\r\n", NULL},
         {"mrtrix tracks\ndatatype: Float32LE\nfile: . 100\n", "no END"},
-        {"mrtrix tracks\nfile: . 100\ndatatype: Float32LE\nfile: . 7\ndatatype: Int8\nEND\n", NULL}, /* the first counts */
+        {"mrtrix tracks\nfile: . 100\ndatatype: Float32LE\nfile: . 7\ndatatype: Int8\nEND\n",
+         NULL}, /* the first counts */
         {"mrtrix tracks\ndatatype: Float32LE\ncount: 615000\nfile: . 100\nEND\n", "615000"},
     };
     (void)state;
@@ -246,13 +257,16 @@ static void tck_header_errors(void **state) {
 }
 
 static void tck_ends(void **state) {
-    static const double empties[] = {ROW(NAN), ROW(NAN), 1, 2, 3, ROW(NAN), ROW(NAN), 4, 5, 6, ROW(-INFINITY), 7, 8, 9};
+    static const double empties[] = {ROW(NAN), ROW(NAN),       1, 2, 3, ROW(NAN), ROW(NAN), 4, 5,
+                                     6,        ROW(-INFINITY), 7, 8, 9};
     const char *head = "mrtrix tracks\ndatatype: Float32LE\nfile: . 60\nEND\n";
     (void)state;
     buffer b = tck_of(head, 60, empties, sizeof empties / sizeof empties[0]);
     patch_u32(&b, 60, 0xFFC00000); /* another NaN */
     io_lines lines = must_read(&b, NULL, NULL);
-    assert_int_equal(lines.line_count, 2); /* the last line needs no NaN before the end mark; what follows is not read */
+    assert_int_equal(
+        lines.line_count,
+        2); /* the last line needs no NaN before the end mark; what follows is not read */
     assert_int_equal(lines.warning_count, 0);
     io_lines_free(&lines);
     buffer_free(&b);
@@ -269,22 +283,27 @@ static void wrong_byte_order_is_noticed(void **state) {
     buffer b = make_tck("Float32BE", false, false);
     must_fail(&b, NULL, NULL, NULL); /* NaN and infinity are not found */
     buffer_free(&b);
-    io_lines lines = read_text("# vtk DataFile Version 3.0\nt\nASCII\nDATASET POLYDATA\nPOINTS 2 float\n"
-                               "1e20 0 0 2 3 4\nLINES 1 3 2 0 1\n", NULL);
+    io_lines lines =
+        read_text("# vtk DataFile Version 3.0\nt\nASCII\nDATASET POLYDATA\nPOINTS 2 float\n"
+                  "1e20 0 0 2 3 4\nLINES 1 3 2 0 1\n",
+                  NULL);
     assert_true(has_warning(&lines, "byte order"));
     io_lines_free(&lines);
 }
 
-/* ---- VTK ------------------------------------------------------------------------------------------ */
+/* ---- VTK ------------------------------------------------------------------------------------- */
 
 #define VTK(mode) "# vtk DataFile Version 4.2\nany title\n" mode "\nDATASET POLYDATA\n"
 #define TRIANGLE VTK("ASCII") "POINTS 3 float\n0 0 0 1 0 0 1 1 0\nLINES 2 6\n2 2 0\n2 1 1\n"
 
 static void vtk_ascii_numbers(void **state) {
     (void)state;
-    io_lines lines = read_text(VTK("ascii") "points 6 float\n+1.5e1 -.5 1E-45\n nan 1.#QNAN -1.#IND\n 1 -inf 2\n"
-                               "1.#INF 0 0\n123456789012345678901234567890 0 0\n0.1 1d2 00000.00000000000000000000001\n"
-                               "lines 1 7 6 0 1 2 3 4 5\n", NULL);
+    io_lines lines =
+        read_text(VTK("ascii") "points 6 float\n+1.5e1 -.5 1E-45\n nan 1.#QNAN -1.#IND\n 1 -inf 2\n"
+                               "1.#INF 0 0\n123456789012345678901234567890 0 0\n0.1 1d2 "
+                               "00000.00000000000000000000001\n"
+                               "lines 1 7 6 0 1 2 3 4 5\n",
+                  NULL);
     assert_int_equal(lines.point_count, 3);
     assert_true(has_warning(&lines, "3 points"));
     assert_true(position(&lines, 0, 0) == 15 && position(&lines, 0, 1) == -0.5);
@@ -292,7 +311,8 @@ static void vtk_ascii_numbers(void **state) {
     assert_true(position(&lines, 1, 0) == (double)1.2345679e29f);
     assert_true(position(&lines, 2, 0) == (double)0.1f && position(&lines, 2, 1) == 100);
     io_lines_free(&lines);
-    const char *wrong[] = {"1,5", "1e", "e5", "--1", "0x10", "1.2.3", "1f", ".", "-", "infinit", "\xFF"};
+    const char *wrong[] = {"1,5", "1e", "e5", "--1",     "0x10", "1.2.3",
+                           "1f",  ".",  "-",  "infinit", "\xFF"};
     for (size_t i = 0; i < sizeof wrong / sizeof wrong[0]; i++) {
         char text[256];
         snprintf(text, sizeof text, VTK("ASCII") "POINTS 1 float\n0 %s 0\n", wrong[i]);
@@ -305,8 +325,10 @@ static void locale_does_not_matter(void **state) {
     (void)state;
     const char *found = setlocale(LC_ALL, "de_DE.UTF-8");
     if (!found)
-        print_message("no locale with a decimal comma here; the reader is tested in the one there is\n");
-    io_lines lines = read_text(VTK("ASCII") "POINTS 1 float\n1.5 2.25 3.125\nLINES 1 2 1 0\n", NULL);
+        print_message(
+            "no locale with a decimal comma here; the reader is tested in the one there is\n");
+    io_lines lines =
+        read_text(VTK("ASCII") "POINTS 1 float\n1.5 2.25 3.125\nLINES 1 2 1 0\n", NULL);
     assert_point(&lines, 0, 1.5, 2.25, 3.125);
     io_lines_free(&lines);
     setlocale(LC_ALL, "C");
@@ -315,24 +337,32 @@ static void locale_does_not_matter(void **state) {
 static void vtk_indices_are_resolved(void **state) {
     (void)state;
     io_lines lines = read_text(TRIANGLE "CELL_DATA 2\nSCALARS c int 1\nLOOKUP_TABLE default\n7 8\n"
-                               "POINT_DATA 3\nSCALARS p double\n10 11 12\n", NULL);
+                                        "POINT_DATA 3\nSCALARS p double\n10 11 12\n",
+                               NULL);
     assert_int_equal(lines.line_count, 2);
     assert_int_equal(lines.point_count, 4);
     assert_point(&lines, 0, 1, 1, 0);
     assert_point(&lines, 3, 1, 0, 0);
-    assert_true(point_attribute(&lines, "p")->data[0] == 12 && point_attribute(&lines, "p")->data[1] == 10);
+    assert_true(point_attribute(&lines, "p")->data[0] == 12 &&
+                point_attribute(&lines, "p")->data[1] == 10);
     assert_true(line_attribute(&lines, "c")->data[1] == 8);
     io_lines_free(&lines);
 }
 
 static void vtk_arrays_of_all_kinds(void **state) {
     (void)state;
-    io_lines lines = read_text(TRIANGLE "POINT_DATA 3\n"
-        "SCALARS Fractional%20Anisotropy%zz unsigned_char 2\nLOOKUP_TABLE my\n1 2 3 4 5 6\nLOOKUP_TABLE my 2\n0 0 0 1 1 1 1 1\n"
-        "COLOR_SCALARS rgb 3\n0 .5 1 0 .5 1 0 .5 1\nNORMALS n float\n1 0 0 0 1 0 0 0 1\nTENSORS t float\n"
-        "1 2 3 4 5 6 7 8 9 1 2 3 4 5 6 7 8 9 1 2 3 4 5 6 7 8 90\n\nTEXTURE_COORDINATES uv 2 float\n0 1 2 3 4 5\n"
-        "METADATA\nCOMPONENT_NAMES\nu\nv\n\nFIELD f 4\nNULL_ARRAY\nwords 1 3 string\none\ntwo words\nthree\nflags 1 3 bit\n1 0 1\n"
-        "METADATA\nINFORMATION 0\n\nlast 1 3 vtktypeint64\n-4 -5 -6\n", NULL);
+    io_lines lines =
+        read_text(TRIANGLE "POINT_DATA 3\n"
+                           "SCALARS Fractional%20Anisotropy%zz unsigned_char 2\nLOOKUP_TABLE my\n1 "
+                           "2 3 4 5 6\nLOOKUP_TABLE my 2\n0 0 0 1 1 1 1 1\n"
+                           "COLOR_SCALARS rgb 3\n0 .5 1 0 .5 1 0 .5 1\nNORMALS n float\n1 0 0 0 1 "
+                           "0 0 0 1\nTENSORS t float\n"
+                           "1 2 3 4 5 6 7 8 9 1 2 3 4 5 6 7 8 9 1 2 3 4 5 6 7 8 "
+                           "90\n\nTEXTURE_COORDINATES uv 2 float\n0 1 2 3 4 5\n"
+                           "METADATA\nCOMPONENT_NAMES\nu\nv\n\nFIELD f 4\nNULL_ARRAY\nwords 1 3 "
+                           "string\none\ntwo words\nthree\nflags 1 3 bit\n1 0 1\n"
+                           "METADATA\nINFORMATION 0\n\nlast 1 3 vtktypeint64\n-4 -5 -6\n",
+                  NULL);
     assert_int_equal(lines.warning_count, 0);
     assert_int_equal(point_attribute(&lines, "Fractional Anisotropy%zz")->components, 2);
     assert_true(point_attribute(&lines, "Fractional Anisotropy%zz")->data[1] == 6);
@@ -347,7 +377,8 @@ static void vtk_arrays_of_all_kinds(void **state) {
 static void vtk_binary_details(void **state) {
     (void)state;
     buffer b = {NULL, 0, 0, true};
-    put_text(&b, VTK("BINARY") "POINTS 2 float       \r\n"); /* blanks and a return before the numbers */
+    put_text(
+        &b, VTK("BINARY") "POINTS 2 float       \r\n"); /* blanks and a return before the numbers */
     for (int i = 0; i < 6; i++)
         put_f32(&b, i);
     put_text(&b, "LINES 1 3\n"); /* no line end behind the numbers */
@@ -368,8 +399,10 @@ static void vtk_binary_details(void **state) {
     io_lines lines = must_read(&b, NULL, NULL);
     assert_int_equal(lines.warning_count, 0);
     assert_point(&lines, 0, 3, 4, 5);
-    assert_true(point_attribute(&lines, "a")->data[0] == 0x0A0A && point_attribute(&lines, "a")->data[1] == -1);
-    assert_true(point_attribute(&lines, "c")->data[0] == 128 && point_attribute(&lines, "c")->data[1] == 10);
+    assert_true(point_attribute(&lines, "a")->data[0] == 0x0A0A &&
+                point_attribute(&lines, "a")->data[1] == -1);
+    assert_true(point_attribute(&lines, "c")->data[0] == 128 &&
+                point_attribute(&lines, "c")->data[1] == 10);
     assert_true(point_attribute(&lines, "l")->data[0] == -1);
     assert_true(point_attribute(&lines, "u")->data[1] == 4294967295.0f);
     io_lines_free(&lines);
@@ -385,7 +418,8 @@ static void vtk_without_lines(void **state) {
     lines = read_text(VTK("ASCII") "POINTS 3 float 0 0 0 1 0 0 0 1 0 POLYGONS 1 4 3 0 1 2\n", NULL);
     assert_true(has_warning(&lines, "polygons"));
     io_lines_free(&lines);
-    fail_text("# vtk DataFile Version 3.0\nt\nASCII\nDATASET STRUCTURED_POINTS\n", "STRUCTURED_POINTS");
+    fail_text("# vtk DataFile Version 3.0\nt\nASCII\nDATASET STRUCTURED_POINTS\n",
+              "STRUCTURED_POINTS");
     fail_text("# vtk DataFile Version 3.0\nt\nbase64\n", "third line");
     fail_text("# vtk DataFile Version 3.0\nt\n", "cut");
     fail_text(VTK("ASCII") "POINTS 1 complex\n", "type");
@@ -396,38 +430,53 @@ static void vtk_without_lines(void **state) {
     io_lines_free(&lines);
 }
 
-/* ---- VTP ------------------------------------------------------------------------------------------- */
+/* ---- VTP ------------------------------------------------------------------------------------- */
 
-#define VTP(lines) "\xEF\xBB\xBF<?xml version='1.0' encoding='UTF-8'?>\n<!-- a comment > -->\n<VTKFile type='PolyData'>" \
-    "<PolyData><FieldData><DataArray type='Float64' Name='TimeValue' NumberOfTuples='1'>1</DataArray></FieldData>" lines \
-    "</PolyData></VTKFile>"
-#define LINES(points, ends, indices) "<Points><DataArray type='Float64' NumberOfComponents='3'>" points "</DataArray></Points>" \
-    "<Lines><DataArray type='Int64' Name='connectivity'>" indices "</DataArray><DataArray type='UInt8' Name='offsets'>" ends \
-    "</DataArray></Lines>"
+#define VTP(lines)                                                                                 \
+    "\xEF\xBB\xBF<?xml version='1.0' encoding='UTF-8'?>\n<!-- a comment > -->\n<VTKFile "          \
+    "type='PolyData'>"                                                                             \
+    "<PolyData><FieldData><DataArray type='Float64' Name='TimeValue' "                             \
+    "NumberOfTuples='1'>1</DataArray></FieldData>" lines "</PolyData></VTKFile>"
+#define LINES(points, ends, indices)                                                               \
+    "<Points><DataArray type='Float64' NumberOfComponents='3'>" points "</DataArray></Points>"     \
+    "<Lines><DataArray type='Int64' Name='connectivity'>" indices                                  \
+    "</DataArray><DataArray type='UInt8' Name='offsets'>" ends "</DataArray></Lines>"
 
-/* Cells of vertices come first in the cell arrays; a name may stand in both sections; entities are decoded. */
+/* Cells of vertices come first in the cell arrays; a name may stand in both sections; entities are
+ * decoded. */
 static void vtp_cells_and_names(void **state) {
     (void)state;
-    io_lines lines = read_text(VTP("<Piece NumberOfPoints='3' NumberOfVerts='1' NumberOfLines='2' NumberOfPolys='1'>"
-        "<CellData><DataArray type='Int16' Name='a&amp;b'>99 1 2 77</DataArray></CellData>"
-        "<PointData><DataArray type='Int16' Name='a&amp;b'>5 6 7</DataArray><DataArray type='String' Name='t'>1</DataArray>"
-        "</PointData>" LINES("0 0 0 1 0 0 2 <!-- text --> 0 0", "2 4", "2 1 1 <![CDATA[0]]>") "</Piece>"), NULL);
+    io_lines lines = read_text(
+        VTP("<Piece NumberOfPoints='3' NumberOfVerts='1' NumberOfLines='2' NumberOfPolys='1'>"
+            "<CellData><DataArray type='Int16' Name='a&amp;b'>99 1 2 77</DataArray></CellData>"
+            "<PointData><DataArray type='Int16' Name='a&amp;b'>5 6 7</DataArray><DataArray "
+            "type='String' Name='t'>1</DataArray>"
+            "</PointData>" LINES("0 0 0 1 0 0 2 <!-- text --> 0 0", "2 4",
+                                 "2 1 1 <![CDATA[0]]>") "</Piece>"),
+        NULL);
     assert_int_equal(lines.line_count, 2);
     assert_int_equal(lines.warning_count, 0);
-    assert_true(line_attribute(&lines, "a&b")->data[0] == 1 && line_attribute(&lines, "a&b")->data[1] == 2);
-    assert_true(point_attribute(&lines, "a&b")->data[0] == 7 && point_attribute(&lines, "a&b")->data[3] == 5);
+    assert_true(line_attribute(&lines, "a&b")->data[0] == 1 &&
+                line_attribute(&lines, "a&b")->data[1] == 2);
+    assert_true(point_attribute(&lines, "a&b")->data[0] == 7 &&
+                point_attribute(&lines, "a&b")->data[3] == 5);
     io_lines_free(&lines);
 }
 
 /* An array that only one piece has is NaN in the others; empty pieces are stepped over. */
 static void vtp_pieces_with_different_arrays(void **state) {
     (void)state;
-    io_lines lines = read_text(VTP(
-        "<Piece NumberOfPoints='0' NumberOfLines='0'/>"
-        "<Piece NumberOfPoints='1' NumberOfLines='1'>" LINES("1 2 3", "1", "0") "</Piece>"
-        "<Piece NumberOfPoints='1' NumberOfLines='1'><PointData><DataArray type='Float32' Name='q'>4</DataArray></PointData>"
-        LINES("4 5 6", "1", "0") "</Piece>"
-        "<Piece NumberOfPoints='1' NumberOfLines='1'>" LINES("7 8 9", "1", "0") "</Piece>"), NULL);
+    io_lines lines = read_text(
+        VTP("<Piece NumberOfPoints='0' NumberOfLines='0'/>"
+            "<Piece NumberOfPoints='1' NumberOfLines='1'>" LINES(
+                "1 2 3", "1",
+                "0") "</Piece>"
+                     "<Piece NumberOfPoints='1' NumberOfLines='1'><PointData><DataArray "
+                     "type='Float32' Name='q'>4</DataArray></PointData>" LINES(
+                         "4 5 6", "1", "0") "</Piece>"
+                                            "<Piece NumberOfPoints='1' NumberOfLines='1'>" LINES(
+                                                "7 8 9", "1", "0") "</Piece>"),
+        NULL);
     assert_int_equal(lines.line_count, 3);
     const io_attribute *q = point_attribute(&lines, "q");
     assert_true(isnan(q->data[0]) && q->data[1] == 4 && isnan(q->data[2]));
@@ -436,18 +485,24 @@ static void vtp_pieces_with_different_arrays(void **state) {
 
 static void vtp_errors(void **state) {
     (void)state;
-    fail_text(VTP("<Piece NumberOfPoints='1' NumberOfLines='1'>" LINES("1 2", "1", "0") "</Piece>"), "'unnamed'");
-    fail_text(VTP("<Piece NumberOfPoints='1' NumberOfLines='1'>" LINES("1 2 3", "1", "1") "</Piece>"), "line 1 uses a point");
-    fail_text(VTP("<Piece NumberOfPoints='1' NumberOfLines='2'>" LINES("1 2 3", "1 0", "0") "</Piece>"), "broken end");
+    fail_text(VTP("<Piece NumberOfPoints='1' NumberOfLines='1'>" LINES("1 2", "1", "0") "</Piece>"),
+              "'unnamed'");
+    fail_text(
+        VTP("<Piece NumberOfPoints='1' NumberOfLines='1'>" LINES("1 2 3", "1", "1") "</Piece>"),
+        "line 1 uses a point");
+    fail_text(
+        VTP("<Piece NumberOfPoints='1' NumberOfLines='2'>" LINES("1 2 3", "1 0", "0") "</Piece>"),
+        "broken end");
     fail_text(VTP("<Piece NumberOfPoints='1' NumberOfLines='1'></Piece>"), "lacks the arrays");
     fail_text("<VTKFile type='UnstructuredGrid'/>", "UnstructuredGrid");
     fail_text("<?xml version='1.0'?><svg/>", "<svg>");
-    fail_text("<VTKFile type='PolyData' compressor='vtkLZMADataCompressor'/>", "vtkLZMADataCompressor");
+    fail_text("<VTKFile type='PolyData' compressor='vtkLZMADataCompressor'/>",
+              "vtkLZMADataCompressor");
     fail_text("<VTKFile type='PolyData'><PolyData>", "XML in line 1");
     fail_text("<VTKFile type='PolyData'><AppendedData encoding='raw'>", "appended data");
 }
 
-/* ---- TRX and TT --------------------------------------------------------------------------------------- */
+/* ---- TRX and TT ------------------------------------------------------------------------------ */
 
 typedef struct trx_parts {
     const char *json, *positions, *offsets; /* the arrays' names; values below */
@@ -456,7 +511,8 @@ typedef struct trx_parts {
 } trx_parts;
 
 static buffer trx_of(trx_parts parts) {
-    zip_item items[6] = {{"header.json", {0}}, {parts.positions, {0}}, {parts.offsets, {0}}, {"groups/g.uint32", {0}},
+    zip_item items[6] = {{"header.json", {0}},         {parts.positions, {0}},
+                         {parts.offsets, {0}},         {"groups/g.uint32", {0}},
                          {"dpg/g/color.3.uint8", {0}}, {"dps/", {0}}};
     put_text(&items[0].content, parts.json);
     for (unsigned i = 0; i < 3 * parts.point_count; i++)
@@ -478,8 +534,14 @@ static io_lines read_trx(trx_parts parts) {
 
 static void trx_offsets(void **state) {
     (void)state;
-    const uint32_t fresh[] = {0, 2, 5}, orphans[] = {0, 2, 4}, unsorted[] = {0, 4, 2}, beyond[] = {0, 2, 50};
-    trx_parts parts = {"{\"NB_VERTICES\":5,\"NB_STREAMLINES\":2}", "positions.3.float32", "offsets.uint32", 5, 3, fresh};
+    const uint32_t fresh[] = {0, 2, 5}, orphans[] = {0, 2, 4}, unsorted[] = {0, 4, 2},
+                   beyond[] = {0, 2, 50};
+    trx_parts parts = {"{\"NB_VERTICES\":5,\"NB_STREAMLINES\":2}",
+                       "positions.3.float32",
+                       "offsets.uint32",
+                       5,
+                       3,
+                       fresh};
     io_lines lines = read_trx(parts);
     assert_int_equal(lines.offsets[2], 5);
     assert_int_equal(lines.groups[0].line_count, 1);
@@ -510,9 +572,18 @@ static void trx_offsets(void **state) {
 static void trx_errors(void **state) {
     (void)state;
     const uint32_t offset[] = {0, 2, 5};
-    const trx_parts good = {"{\"NB_VERTICES\":5,\"NB_STREAMLINES\":2}", "positions.3.float32", "offsets.uint32", 5, 3, offset};
-    const char *headers[] = {"", "[]", "{\"NB_VERTICES\":5}", "{\"NB_VERTICES\":-1,\"NB_STREAMLINES\":2}",
-                             "{\"NB_VERTICES\":1e99,\"NB_STREAMLINES\":2}", "{\"NB_VERTICES\":\"5\",\"NB_STREAMLINES\":2}"};
+    const trx_parts good = {"{\"NB_VERTICES\":5,\"NB_STREAMLINES\":2}",
+                            "positions.3.float32",
+                            "offsets.uint32",
+                            5,
+                            3,
+                            offset};
+    const char *headers[] = {"",
+                             "[]",
+                             "{\"NB_VERTICES\":5}",
+                             "{\"NB_VERTICES\":-1,\"NB_STREAMLINES\":2}",
+                             "{\"NB_VERTICES\":1e99,\"NB_STREAMLINES\":2}",
+                             "{\"NB_VERTICES\":\"5\",\"NB_STREAMLINES\":2}"};
     trx_parts parts = good;
     for (size_t i = 0; i < sizeof headers / sizeof headers[0]; i++) {
         parts.json = headers[i];
@@ -521,9 +592,10 @@ static void trx_errors(void **state) {
         buffer_free(&b);
     }
     const char *words[] = {"positions", "5 points", "offsets for 9 lines"};
-    const trx_parts wrong[] = {{good.json, "positions.2.float32", good.offsets, 5, 3, offset},
-                               {"{\"NB_VERTICES\":9,\"NB_STREAMLINES\":2}", good.positions, good.offsets, 5, 3, offset},
-                               {"{\"NB_VERTICES\":5,\"NB_STREAMLINES\":9}", good.positions, good.offsets, 5, 3, offset}};
+    const trx_parts wrong[] = {
+        {good.json, "positions.2.float32", good.offsets, 5, 3, offset},
+        {"{\"NB_VERTICES\":9,\"NB_STREAMLINES\":2}", good.positions, good.offsets, 5, 3, offset},
+        {"{\"NB_VERTICES\":5,\"NB_STREAMLINES\":9}", good.positions, good.offsets, 5, 3, offset}};
     for (size_t i = 0; i < 3; i++) {
         buffer b = trx_of(wrong[i]);
         must_fail(&b, NULL, NULL, words[i]);
@@ -536,15 +608,13 @@ static void trx_errors(void **state) {
     buffer_free(&b);
 }
 
-/* A new zip64 or stored entry with extra bytes is libzip's matter; a wrong checksum must be told. */
+/* A new zip64 or stored entry with extra bytes is libzip's matter; a wrong checksum must be told.
+ */
 static void trx_damage_is_told(void **state) {
     (void)state;
-    buffer b = {0};
-    for (size_t i = 0; i < sample_count; i++)
-        if (!strcmp(samples[i].name, "new.trx"))
-            b = samples[i].make();
+    buffer b = make_sample("new.trx");
     size_t at = 0;
-    while (memcmp(b.data + at, "positions", 9))
+    while (memcmp(b.data + at, "positions", 9) != 0)
         at++;
     b.data[at + 30] ^= 1; /* a byte of the first coordinates */
     must_fail(&b, NULL, NULL, "positions.3.float32");
@@ -564,7 +634,8 @@ static void put_tt_matrix(buffer *b, const char *name, const void *data, uint32_
 /* Big files split their lines over track, track1, ...; without trans_to_mni voxels are scaled. */
 static void tt_goes_on_in_more_arrays(void **state) {
     (void)state;
-    const uint8_t record[19] = {6, 0, 0, 0, 32, 0, 0, 0, 64, 0, 0, 0, 0xE0, 0xFF, 0xFF, 0xFF, 32, 0x80, 0};
+    const uint8_t record[19] = {6, 0, 0,    0,    32,   0,    0,  0,    64, 0,
+                                0, 0, 0xE0, 0xFF, 0xFF, 0xFF, 32, 0x80, 0};
     buffer b = {0};
     put_tt_matrix(&b, "track", record, 19);
     put_tt_matrix(&b, "track1", record, 19);

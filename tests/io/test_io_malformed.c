@@ -1,4 +1,5 @@
-/* No damaged file crashes a reader, leaks, or fails without a reason: every sample cut at every byte, and with hostile values at every place. */
+/* No damaged file crashes a reader, leaks, or fails without a reason: every sample cut at every
+ * byte, and with hostile values at every place. */
 #include "samples.h"
 
 #include <setjmp.h>
@@ -9,7 +10,8 @@
 
 #include <cmocka.h>
 
-/* Reads size bytes from a block of exactly that size, so that the address sanitizer sees each byte too far. */
+/* Reads size bytes from a block of exactly that size, so that the address sanitizer sees each byte
+ * too far. */
 static bool survives(const uint8_t *data, size_t size, const char *name) {
     io_lines lines, before;
     io_error error = {""};
@@ -63,7 +65,8 @@ static void cut_lines_are_counted(void **state) {
 }
 
 static void hostile_values_at_every_place(void **state) {
-    static const uint32_t hostile[] = {0xFFFFFFFF, 0x7FFFFFFF, 0x80000000, 0, 0x10000000, 0x00000100};
+    static const uint32_t hostile[] = {0xFFFFFFFF, 0x7FFFFFFF, 0x80000000,
+                                       0,          0x10000000, 0x00000100};
     static const uint8_t bytes[] = {0, 0xFF, 0x80, '9', '<', ' '};
     (void)state;
     for (size_t i = 0; i < sample_count; i++) {
@@ -87,28 +90,41 @@ static void hostile_values_at_every_place(void **state) {
     }
 }
 
-/* Texts whose counts promise far more than they hold must fail before any memory is taken for them. */
+/* Texts whose counts promise far more than they hold must fail before any memory is taken for them.
+ */
 static void hostile_counts_fail_early(void **state) {
     static const struct {
         const char *name, *text;
     } files[] = {
-        {"a.vtk", "# vtk DataFile Version 3.0\nt\nASCII\nDATASET POLYDATA\nPOINTS 18446744073709551615 float\n1"},
-        {"a.vtk", "# vtk DataFile Version 3.0\nt\nBINARY\nDATASET POLYDATA\nPOINTS 6148914691236517206 float\n1"},
-        {"a.vtk", "# vtk DataFile Version 3.0\nt\nASCII\nDATASET POLYDATA\nPOINTS 1 float 1 2 3\nLINES 1 99999999999\n1"},
-        {"a.vtk", "# vtk DataFile Version 3.0\nt\nASCII\nDATASET POLYDATA\nPOINTS 1 float 1 2 3\nLINES 1 2 5 0\n"},
-        {"a.vtk", "# vtk DataFile Version 3.0\nt\nASCII\nDATASET POLYDATA\nPOINTS 1 float 1 2 3\nLINES 1 2 1 1\n"},
-        {"a.vtk", "# vtk DataFile Version 3.0\nt\nASCII\nDATASET POLYDATA\nPOINTS 1 float 1 2 3\nLINES 1 2 1 -1\n"},
-        {"a.vtk", "# vtk DataFile Version 3.0\nt\nASCII\nDATASET POLYDATA\nPOINTS 1 float 1 2 3\nLINES 3 2 OFFSETS int 0 2 1 "
+        {"a.vtk", "# vtk DataFile Version 3.0\nt\nASCII\nDATASET POLYDATA\nPOINTS "
+                  "18446744073709551615 float\n1"},
+        {"a.vtk", "# vtk DataFile Version 3.0\nt\nBINARY\nDATASET POLYDATA\nPOINTS "
+                  "6148914691236517206 float\n1"},
+        {"a.vtk", "# vtk DataFile Version 3.0\nt\nASCII\nDATASET POLYDATA\nPOINTS 1 float 1 2 "
+                  "3\nLINES 1 99999999999\n1"},
+        {"a.vtk", "# vtk DataFile Version 3.0\nt\nASCII\nDATASET POLYDATA\nPOINTS 1 float 1 2 "
+                  "3\nLINES 1 2 5 0\n"},
+        {"a.vtk", "# vtk DataFile Version 3.0\nt\nASCII\nDATASET POLYDATA\nPOINTS 1 float 1 2 "
+                  "3\nLINES 1 2 1 1\n"},
+        {"a.vtk", "# vtk DataFile Version 3.0\nt\nASCII\nDATASET POLYDATA\nPOINTS 1 float 1 2 "
+                  "3\nLINES 1 2 1 -1\n"},
+        {"a.vtk", "# vtk DataFile Version 3.0\nt\nASCII\nDATASET POLYDATA\nPOINTS 1 float 1 2 "
+                  "3\nLINES 3 2 OFFSETS int 0 2 1 "
                   "CONNECTIVITY int 0 0"},
-        {"a.vtk", "# vtk DataFile Version 3.0\nt\nASCII\nDATASET POLYDATA\nPOINT_DATA 9\nFIELD f 1\na 4294967296 4294967296 float 1"},
-        {"a.vtp", "<VTKFile type='PolyData'><PolyData><Piece NumberOfPoints='9999999999' NumberOfLines='1'><Points>"
-                  "<DataArray type='Float32' NumberOfComponents='3' format='ascii'>1 2 3</DataArray></Points><Lines>"
-                  "<DataArray type='Int32' Name='offsets'>1</DataArray><DataArray type='Int32' Name='connectivity'>0"
+        {"a.vtk", "# vtk DataFile Version 3.0\nt\nASCII\nDATASET POLYDATA\nPOINT_DATA 9\nFIELD f "
+                  "1\na 4294967296 4294967296 float 1"},
+        {"a.vtp", "<VTKFile type='PolyData'><PolyData><Piece NumberOfPoints='9999999999' "
+                  "NumberOfLines='1'><Points>"
+                  "<DataArray type='Float32' NumberOfComponents='3' format='ascii'>1 2 "
+                  "3</DataArray></Points><Lines>"
+                  "<DataArray type='Int32' Name='offsets'>1</DataArray><DataArray type='Int32' "
+                  "Name='connectivity'>0"
                   "</DataArray></Lines></Piece></PolyData></VTKFile>"},
         {"a.vtp", "<VTKFile type='PolyData' compressor='vtkLZ4DataCompressor'/>"},
         {"a.vtp", "<VTKFile type='ImageData'/>"},
         {"a.vtp", "<VTKFile type='PolyData'><PolyData></VTKFile>"},
-        {"a.vtp", "<!DOCTYPE a [<!ENTITY b 'cccccccccc'><!ENTITY d '&b;&b;&b;&b;&b;&b;&b;&b;&b;&b;'>]><a>&d;</a>"},
+        {"a.vtp", "<!DOCTYPE a [<!ENTITY b 'cccccccccc'><!ENTITY d "
+                  "'&b;&b;&b;&b;&b;&b;&b;&b;&b;&b;'>]><a>&d;</a>"},
     };
     (void)state;
     for (size_t i = 0; i < sizeof files / sizeof files[0]; i++) {
@@ -119,7 +135,8 @@ static void hostile_counts_fail_early(void **state) {
     }
 }
 
-/* A gzip of 64 MB of zeros behind a small head must not take more memory than its limit, nor be believed. */
+/* A gzip of 64 MB of zeros behind a small head must not take more memory than its limit, nor be
+ * believed. */
 static void zip_bombs_are_stopped(void **state) {
     (void)state;
     buffer zeros = {0};

@@ -1,13 +1,16 @@
-/* Every format in every encoding gives the same lines, attributes and groups; filters carry them along; what is written reads back. */
+/* Every format in every encoding gives the same lines, attributes and groups; filters carry them
+ * along; what is written reads back. */
 #include "samples.h"
 
 #include <dirent.h>
 #include <math.h>
 #include <setjmp.h>
+#include <signal.h>
 #include <stdarg.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/resource.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
@@ -41,15 +44,10 @@ static void all_samples_hold_the_same(void **state) {
 }
 
 static io_lines read_sample(const char *name, const io_options *options) {
-    for (size_t i = 0; i < sample_count; i++)
-        if (!strcmp(samples[i].name, name)) {
-            buffer b = samples[i].make();
-            io_lines lines = must_read(&b, name, options);
-            buffer_free(&b);
-            return lines;
-        }
-    fail_msg("no sample %s", name);
-    return (io_lines){0};
+    buffer b = make_sample(name);
+    io_lines lines = must_read(&b, name, options);
+    buffer_free(&b);
+    return lines;
 }
 
 static void every_keeps_rows_together(void **state) {
@@ -139,7 +137,8 @@ static void progress_ascends_and_cancels(void **state) {
     }
 }
 
-/* ---- Files ------------------------------------------------------------------------------------- */
+/* ---- Files -------------------------------------------------------------------------------------
+ */
 
 static char folder[64];
 
@@ -163,7 +162,9 @@ static int remove_folder(void **state) {
     return rmdir(folder);
 }
 
-static void path_in_folder(char path[128], const char *name) { snprintf(path, 128, "%s/%s", folder, name); }
+static void path_in_folder(char path[128], const char *name) {
+    snprintf(path, 128, "%s/%s", folder, name);
+}
 
 static void written_files_read_back(void **state) {
     (void)state;
@@ -180,7 +181,7 @@ static void written_files_read_back(void **state) {
         if (!io_read_lines(path, NULL, &back, &error))
             fail_msg("%s", error.text);
         assert_sample(&back, i > 0, false);
-        assert_memory_equal(back.points, lines.points, SAMPLE_POINTS * 3 * sizeof(float));
+        assert_memory_equal(back.points, lines.points, sizeof(float) * SAMPLE_POINTS * 3);
         io_lines_free(&back);
         io_lines_free(&lines);
         unlink(path);
@@ -231,7 +232,10 @@ static void far_away_lines_keep_their_detail(void **state) {
     io_error error = {""};
     path_in_folder(path, "far.vtp");
     assert_true(lines.origin[0] == 0 && lines.origin[2] < -1000);
-    assert_true(io_write_lines(path, &lines, &error) && io_read_lines(path, NULL, &back, &error));
+    if (!io_write_lines(path, &lines, &error) || !io_read_lines(path, NULL, &back, &error)) {
+        fail_msg("%s", error.text);
+        return;
+    }
     for (int i = 0; i < 2; i++) {
         const io_lines *l = i ? &back : &lines;
         assert_true(fabs((double)l->points[2] + l->origin[2] + 1100.0000011) < 1e-7);
@@ -263,6 +267,30 @@ static void failed_writes_leave_nothing(void **state) {
     assert_int_equal(files_in_folder(), 1);
     rmdir(path);
     assert_false(io_write_lines("/dev/full/a.tck", &lines, &error));
+    io_lines_free(&lines);
+}
+
+/* A disk that fills up, played by a limit on the size of files. */
+static void full_disks_leave_nothing(void **state) {
+    (void)state;
+    const char *names[] = {"f.tck", "f.trk", "f.vtp"};
+    io_lines lines = read_sample("new.trx", NULL);
+    struct rlimit before, tight;
+    getrlimit(RLIMIT_FSIZE, &before);
+    tight = before;
+    tight.rlim_cur = 50;
+    signal(SIGXFSZ, SIG_IGN);
+    for (size_t i = 0; i < 3; i++) {
+        char path[128];
+        io_error error = {""};
+        path_in_folder(path, names[i]);
+        setrlimit(RLIMIT_FSIZE, &tight);
+        bool written = io_write_lines(path, &lines, &error);
+        setrlimit(RLIMIT_FSIZE, &before);
+        assert_false(written);
+        assert_non_null(strstr(error.text, "too large"));
+        assert_int_equal(files_in_folder(), 0);
+    }
     io_lines_free(&lines);
 }
 
@@ -302,7 +330,8 @@ static void write_item(const char *name, const buffer *content) {
 static void unpacked_trx_folders_are_read(void **state) {
     (void)state;
     const char *folders[] = {"dpv", "dps"};
-    const char *files[] = {"header.json", "positions.3.float64", "offsets.uint32", "dpv/s.int8", "dps/w.uint16"};
+    const char *files[] = {"header.json", "positions.3.float64", "offsets.uint32", "dpv/s.int8",
+                           "dps/w.uint16"};
     buffer content[5] = {{0}};
     char path[128];
     for (size_t i = 0; i < 2; i++) {
@@ -354,6 +383,7 @@ int main(void) {
         cmocka_unit_test(names_survive_writing),
         cmocka_unit_test(far_away_lines_keep_their_detail),
         cmocka_unit_test(failed_writes_leave_nothing),
+        cmocka_unit_test(full_disks_leave_nothing),
         cmocka_unit_test(missing_and_foreign_files_are_told),
         cmocka_unit_test(unpacked_trx_folders_are_read),
     };

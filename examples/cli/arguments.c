@@ -1,0 +1,431 @@
+#include "arguments.h"
+
+#include "report.h"
+#include "scene.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+typedef enum flag_type {
+    FLAG_SWITCH,  /* bool */
+    FLAG_TEXT,    /* const char * */
+    FLAG_CHOICE,  /* const char *, one of `choices` */
+    FLAG_SCENE,   /* const char *, the name of an embedded scene */
+    FLAG_COUNT,   /* uint32_t, at least 1 */
+    FLAG_NUMBER,  /* double */
+    FLAG_LENGTH,  /* double, at least 0 */
+    FLAG_SIZE,    /* uint32_t[2] */
+    FLAG_RANGE,   /* double[2] */
+    FLAG_COLOR,   /* double[4] */
+    FLAG_PAINT,   /* const char *, a colour or the name of something with colours */
+    FLAG_ASSIGN,  /* name=value of a setting */
+    FLAG_SETTING, /* the setting named in `choices` */
+} flag_type;
+
+typedef struct flag_row {
+    const char *name, *other, *value;
+    flag_type type;
+    unsigned commands; /* cli_command_bit */
+    bool per_file;     /* offset counts in cli_source, else in cli_options */
+    size_t offset;
+    const char *choices, *help;
+} flag_row;
+
+#define BOTH (CLI_RENDER | CLI_COMPARE)
+#define ANY (CLI_INFO | BOTH)
+#define ALL(field) false, offsetof(cli_options, field)
+#define FILE_(field) true, offsetof(cli_source, field)
+
+// clang-format off
+static const flag_row flags[] = {
+    {"--out", "-o", "FILE.png", FLAG_TEXT, BOTH, ALL(out), NULL, "the picture; with --frames a pattern (out_%04d.png, first = 0)"},
+    {"--scene", NULL, "NAME", FLAG_SCENE, BOTH, ALL(scene), NULL, "embedded scene, when no FILE is given (aorta)"},
+    {"--lines", NULL, "N", FLAG_COUNT, BOTH, ALL(lines), NULL, "lines of the embedded scene"},
+    {"--size", NULL, "WxH", FLAG_SIZE, BOTH, ALL(size), NULL, "pixels (render: 1280x960, compare: 640x480)"},
+    {"--ssaa", NULL, "N", FLAG_SETTING, BOTH, ALL(all), "supersampling", "samples per pixel and axis, 1..4 (2)"},
+    {"--background", NULL, "#rrggbb", FLAG_COLOR, BOTH, ALL(background), NULL, "or #rrggbbaa or r,g,b[,a] in 0..1 (#f4f4f2)"},
+    {"--backend", NULL, "gl|vk", FLAG_CHOICE, CLI_RENDER, ALL(backend), "gl|vk", "OpenGL or Vulkan (gl); the picture is the same"},
+    {"--camera", NULL, "FILE.json", FLAG_TEXT, BOTH, ALL(camera), NULL, "{\"eye\":[3],\"center\":[3],\"up\":[3],\"fovy\":degrees | \"ortho_height\":mm}"},
+    {"--save-camera", NULL, "FILE.json", FLAG_TEXT, CLI_RENDER, ALL(save_camera), NULL, "write the camera that was used"},
+    {"--view", NULL, "NAME", FLAG_CHOICE, BOTH, ALL(view), "axial|coronal|sagittal|iso", "direction of the automatic camera: axial, coronal, sagittal or iso"},
+    {"--ortho", NULL, NULL, FLAG_SWITCH, BOTH, ALL(ortho), NULL, "make the automatic camera orthographic"},
+    {"--time", NULL, "MS", FLAG_NUMBER, BOTH, ALL(time), NULL, "the time to show (0)"},
+    {"--frames", NULL, "N", FLAG_COUNT, CLI_RENDER, ALL(frames), NULL, "a sequence of pictures, its time running over that of the data"},
+    {"--dump", NULL, "FILE.exr", FLAG_TEXT, CLI_RENDER, ALL(dump), NULL, "every image of the frame graph as 32-bit floats (OpenEXR)"},
+    {"--timings", NULL, "FILE.json", FLAG_TEXT, CLI_RENDER, ALL(timings), NULL, "milliseconds of the frame and of each pass"},
+    {"--json", NULL, NULL, FLAG_SWITCH, CLI_INFO | CLI_COMPARE, ALL(json), NULL, "one JSON object on standard output"},
+    {"--help", "-h", NULL, FLAG_SWITCH, ANY, ALL(help), NULL, "this text"},
+    {"--color", NULL, "#rrggbb", FLAG_PAINT, BOTH, FILE_(color), NULL, "or r,g,b in 0..1, direction, line or the NAME of an attribute"},
+    {"--colormap", NULL, "NAME", FLAG_CHOICE, BOTH, FILE_(colormap), "viridis|inferno|coolwarm|gray", "of attributes: viridis (default), inferno, coolwarm or gray"},
+    {"--range", NULL, "A,B", FLAG_RANGE, BOTH, FILE_(range), NULL, "values at both ends of the colour map (those of the data)"},
+    {"--every", NULL, "N", FLAG_COUNT, BOTH, FILE_(every), NULL, "keep each N-th line"},
+    {"--min-length", NULL, "MM", FLAG_LENGTH, BOTH, FILE_(min_length), NULL, "drop shorter lines"},
+    {"--bundle", NULL, "NAME", FLAG_TEXT, BOTH, FILE_(bundle), NULL, "keep the lines of this group (TRX group, TT cluster)"},
+    {"--set", NULL, "NAME=VALUE", FLAG_ASSIGN, BOTH, FILE_(settings), NULL, "a setting, as its own flag does"},
+};
+// clang-format on
+enum { FLAG_ROWS = sizeof flags / sizeof *flags };
+
+typedef struct parser {
+    cli_command_bit command;
+    cli_options *options;
+    cli_source *source; /* where per-file flags go now */
+} parser;
+
+/* ---- values ----------------------------------------------------------------------------- */
+
+static const char *next_choice(const char *choices) {
+    choices += strcspn(choices, "|");
+    return *choices ? choices + 1 : choices;
+}
+
+static bool is_choice(const char *choices, const char *text) {
+    size_t length = strlen(text);
+    for (const char *at = choices; *at; at = next_choice(at)) {
+        if (strcspn(at, "|") == length && strncmp(at, text, length) == 0)
+            return true;
+    }
+    return false;
+}
+
+static bool parse_count(const char *text, uint32_t *count) {
+    double number;
+    if (strspn(text, "0123456789") != strlen(text) || !cli_number(text, &number) || number < 1 ||
+        number > 1e8)
+        return false;
+    *count = (uint32_t)number;
+    return true;
+}
+
+static bool parse_size(const char *text, uint32_t size[2]) {
+    char part[16];
+    size_t length = strcspn(text, "x");
+    if (text[length] != 'x' || length >= sizeof part)
+        return false;
+    memcpy(part, text, length);
+    part[length] = '\0';
+    uint32_t width, height;
+    if (!parse_count(part, &width) || !parse_count(text + length + 1, &height) || width > 32768 ||
+        height > 32768)
+        return false;
+    size[0] = width;
+    size[1] = height;
+    return true;
+}
+
+bool cli_parse_color(const char *text, double color[4]) {
+    double c[4] = {0, 0, 0, 1};
+    size_t length = strlen(text);
+    if (*text == '#') {
+        if ((length != 7 && length != 9) ||
+            strspn(text + 1, "0123456789abcdefABCDEF") != length - 1)
+            return false;
+        for (size_t i = 0; 2 * i + 1 < length; i++) {
+            const char digits[3] = {text[2 * i + 1], text[2 * i + 2], '\0'};
+            c[i] = (double)strtoul(digits, NULL, 16) / 255.0;
+        }
+    } else if (!cli_numbers(text, c, 4) && (c[3] = 1, !cli_numbers(text, c, 3))) {
+        return false;
+    }
+    for (int i = 0; i < 4; i++) {
+        if (!(c[i] >= 0 && c[i] <= 1))
+            return false;
+    }
+    memcpy(color, c, sizeof c);
+    return true;
+}
+
+/* "align-intensity" and "align_intensity" are the same setting; -1: none. */
+static int find_setting(const char *name, size_t length) {
+    char text[64];
+    if (length >= sizeof text)
+        return -1;
+    for (size_t i = 0; i < length; i++)
+        text[i] = name[i] == '-' ? '_' : name[i];
+    text[length] = '\0';
+    return lao_setting_find(lao_lines_module(), text);
+}
+
+static const char *setting_name(const void *user, uint32_t index) {
+    const lao_module *module = user;
+    return index < module->setting_count ? module->settings[index].name : NULL;
+}
+
+static const char *scene_name(const void *user, uint32_t index) {
+    (void)user;
+    uint32_t count;
+    const char *const *names = scene_names(&count);
+    return index < count ? names[index] : NULL;
+}
+
+void cli_setting_text(const lao_setting_row *row, float value, char *text, size_t size) {
+    if (row->type == LAO_SETTING_BOOL) {
+        snprintf(text, size, "%s", value > 0 ? "on" : "off");
+    } else if (row->type == LAO_SETTING_ENUM) {
+        const char *at = row->choices;
+        for (int i = 0; i < (int)value; i++)
+            at = next_choice(at);
+        snprintf(text, size, "%.*s", (int)strcspn(at, "|"), at);
+    } else {
+        cli_shortest(value, text, size);
+    }
+}
+
+/* "0.1..5 mm", "on|off", "box|gaussian" */
+static void setting_values(const lao_setting_row *row, char *text, size_t size) {
+    if (row->type == LAO_SETTING_ENUM) {
+        snprintf(text, size, "%s", row->choices);
+    } else if (row->type == LAO_SETTING_BOOL) {
+        snprintf(text, size, "on|off");
+    } else {
+        char low[32], high[32];
+        cli_shortest(row->minimum, low, sizeof low);
+        cli_shortest(row->maximum, high, sizeof high);
+        snprintf(text, size, "%s..%s%s%s", low, high, *row->unit ? " " : "", row->unit);
+    }
+}
+
+/* Gives one setting to the source; supersampling belongs to the picture, thus to every source. */
+static bool set_setting(parser *p, int setting, const char *value) {
+    const lao_module *module = lao_lines_module();
+    const lao_setting_row *row = &module->settings[setting];
+    if (lao_setting_parse(module, setting, value, &p->source->settings) != 0) {
+        char values[256];
+        setting_values(row, values, sizeof values);
+        return cli_fail("%s: '%s' is not a value of it; write %s", row->name, value, values);
+    }
+    if (strcmp(row->name, "supersampling") == 0) {
+        lao_setting_parse(module, setting, value, &p->options->all.settings);
+        for (uint32_t i = 0; i < p->options->file_count; i++)
+            lao_setting_parse(module, setting, value, &p->options->files[i].settings);
+    }
+    return true;
+}
+
+static bool set_assignment(parser *p, const char *text) {
+    size_t length = strcspn(text, "=");
+    if (text[length] != '=')
+        return cli_fail("--set: '%s' has no value; write --set name=value", text);
+    int setting = find_setting(text, length);
+    if (setting >= 0)
+        return set_setting(p, setting, text + length + 1);
+    char name[64];
+    snprintf(name, sizeof name, "%.*s", (int)(length < 63 ? length : 63), text);
+    const char *nearest = cli_nearest(name, setting_name, lao_lines_module());
+    return cli_fail("--set: there is no setting '%s'%s%s; 'lineao render --help' lists them", name,
+                    nearest ? "; did you mean " : "", nearest ? nearest : "");
+}
+
+static bool set_scene(const char *value, const char **scene) {
+    *scene = value;
+    for (uint32_t i = 0; scene_name(NULL, i); i++) {
+        if (strcmp(scene_name(NULL, i), value) == 0)
+            return true;
+    }
+    const char *nearest = cli_nearest(value, scene_name, NULL);
+    char names[256] = "";
+    for (uint32_t i = 0; scene_name(NULL, i); i++) {
+        size_t used = strlen(names);
+        snprintf(names + used, sizeof names - used, "%s%s", i ? ", " : "", scene_name(NULL, i));
+    }
+    return cli_fail("--scene: there is no scene '%s'%s%s; scenes are %s", value,
+                    nearest ? "; did you mean " : "", nearest ? nearest : "", names);
+}
+
+/* ---- flags ------------------------------------------------------------------------------ */
+
+static bool set_flag(parser *p, const flag_row *row, const char *value) {
+    void *field =
+        row->per_file ? (char *)p->source + row->offset : (char *)p->options + row->offset;
+    bool ok = true;
+    switch (row->type) {
+    case FLAG_SWITCH:
+        *(bool *)field = true;
+        break;
+    case FLAG_CHOICE:
+        ok = is_choice(row->choices, value);
+        *(const char **)field = value;
+        break;
+    case FLAG_TEXT:
+        ok = *value != '\0';
+        *(const char **)field = value;
+        break;
+    case FLAG_SCENE:
+        return set_scene(value, field);
+    case FLAG_COUNT:
+        ok = parse_count(value, field);
+        break;
+    case FLAG_NUMBER:
+        ok = cli_number(value, field);
+        break;
+    case FLAG_LENGTH:
+        ok = cli_number(value, field) && *(double *)field >= 0;
+        break;
+    case FLAG_SIZE:
+        ok = parse_size(value, field);
+        break;
+    case FLAG_RANGE:
+        ok = cli_numbers(value, field, 2) && ((double *)field)[0] != ((double *)field)[1];
+        break;
+    case FLAG_COLOR:
+        ok = cli_parse_color(value, field);
+        break;
+    case FLAG_PAINT:
+        ok = *value != '\0' && (*value != '#' || cli_parse_color(value, (double[4]){0}));
+        *(const char **)field = value;
+        break;
+    case FLAG_ASSIGN:
+        return set_assignment(p, value);
+    case FLAG_SETTING:
+        return set_setting(p, find_setting(row->choices, strlen(row->choices)), value);
+    }
+    return ok || cli_fail("%s: '%s' is not a value of it; write %s", row->name, value,
+                          row->choices ? row->choices : row->value);
+}
+
+static const flag_row *find_flag(cli_command_bit command, const char *name, size_t length) {
+    for (size_t i = 0; i < FLAG_ROWS; i++) {
+        const char *names[2] = {flags[i].name, flags[i].other};
+        for (int k = 0; k < 2 && (flags[i].commands & command); k++) {
+            if (names[k] && strlen(names[k]) == length && strncmp(names[k], name, length) == 0)
+                return &flags[i];
+        }
+    }
+    return NULL;
+}
+
+/* Flags of the table, then settings in the spelling of flags. */
+static const char *flag_name(const void *user, uint32_t index) {
+    const parser *p = user;
+    for (size_t i = 0; i < FLAG_ROWS; i++) {
+        if ((flags[i].commands & p->command) && index-- == 0)
+            return flags[i].name + 2;
+    }
+    return p->command == CLI_INFO ? NULL : setting_name(lao_lines_module(), index);
+}
+
+static bool unknown_flag(const parser *p, const char *text, size_t length) {
+    char name[64];
+    snprintf(name, sizeof name, "%.*s", (int)(length < 63 ? length : 63), text);
+    const char *nearest = cli_nearest(name + strspn(name, "-"), flag_name, p);
+    return cli_fail("%s: unknown flag%s%s; --help lists them", name,
+                    nearest ? "; did you mean --" : "", nearest ? nearest : "");
+}
+
+/* Takes argv[at] and its value; returns how many were taken, 0 on failure. */
+static int take_flag(parser *p, int argc, char **argv, int at) {
+    const char *text = argv[at], *equals = strchr(text, '=');
+    size_t length = equals ? (size_t)(equals - text) : strlen(text);
+    const flag_row *row = find_flag(p->command, text, length);
+    int setting = row || p->command == CLI_INFO || strncmp(text, "--", 2) != 0
+                      ? -1
+                      : find_setting(text + 2, length - 2);
+    if (!row && setting < 0)
+        return unknown_flag(p, text, length);
+    if (row && row->type == FLAG_SWITCH && !equals)
+        return set_flag(p, row, NULL);
+    if (row && row->type == FLAG_SWITCH)
+        return cli_fail("%s: takes no value", row->name);
+    const char *value = equals ? equals + 1 : at + 1 < argc ? argv[at + 1] : NULL;
+    if (!value)
+        return cli_fail("%s: its value is missing; --help explains it", text);
+    if (!(row ? set_flag(p, row, value) : set_setting(p, setting, value)))
+        return 0;
+    return equals ? 1 : 2;
+}
+
+static bool check(const parser *p) {
+    const cli_options *o = p->options;
+    if (o->help)
+        return true;
+    if (p->command == CLI_INFO && o->file_count == 0)
+        return cli_fail("info: no FILE is given; write lineao info FILE...");
+    if (p->command == CLI_RENDER && !o->out && !o->dump && !o->timings && !o->save_camera)
+        return cli_fail("render: no output is asked for; write -o out.png");
+    if (o->file_count > 0 && (o->scene || o->lines))
+        return cli_fail("%s: is for embedded scenes, and a FILE is given; %s",
+                        o->scene ? "--scene" : "--lines",
+                        o->scene ? "leave one of them out" : "thin a file with --every N");
+    if (o->camera && (o->view || o->ortho))
+        return cli_fail("%s: is for the automatic camera, and --camera is given; leave one out",
+                        o->view ? "--view" : "--ortho");
+    return true;
+}
+
+bool cli_parse(cli_command_bit command, int argc, char **argv, cli_options *out) {
+    memset(out, 0, sizeof *out);
+    out->backend = "gl";
+    out->size[0] = command == CLI_COMPARE ? 640 : 1280;
+    out->size[1] = command == CLI_COMPARE ? 480 : 960;
+    out->all.colormap = "viridis";
+    cli_parse_color("#f4f4f2", out->background);
+    out->files = cli_new((size_t)argc + 1, sizeof *out->files);
+    if (!out->files)
+        return false;
+    parser p = {command, out, &out->all};
+    bool only_files = false;
+    for (int i = 0, taken = 1; i < argc; i += taken) {
+        taken = 1;
+        if (!only_files && strcmp(argv[i], "--") == 0) {
+            only_files = true;
+        } else if (!only_files && argv[i][0] == '-') {
+            taken = take_flag(&p, argc, argv, i);
+            if (!taken)
+                return false;
+        } else if (argv[i][0] == '\0') {
+            return cli_fail("a FILE has no name; check the quotes of the command");
+        } else {
+            p.source = &out->files[out->file_count++];
+            *p.source = out->all;
+            p.source->path = argv[i];
+        }
+    }
+    return check(&p);
+}
+
+void cli_options_free(cli_options *options) {
+    free(options->files);
+    options->files = NULL;
+}
+
+/* ---- help ------------------------------------------------------------------------------- */
+
+static void print_rows(cli_command_bit command, bool per_file, const char *title) {
+    bool any = false;
+    for (size_t i = 0; i < FLAG_ROWS; i++) {
+        const flag_row *row = &flags[i];
+        if (!(row->commands & command) || row->per_file != per_file)
+            continue;
+        if (!any)
+            printf("\n%s\n", title);
+        any = true;
+        char left[64];
+        snprintf(left, sizeof left, "%s%s%s %s", row->other ? row->other : "",
+                 row->other ? ", " : "", row->name, row->value ? row->value : "");
+        printf("  %-26s %s\n", left, row->help);
+    }
+}
+
+static void print_settings(void) {
+    const lao_module *module = lao_lines_module();
+    printf("\nSettings, for all FILEs or for one (default in parentheses)\n");
+    for (uint32_t i = 0; i < module->setting_count; i++) {
+        const lao_setting_row *row = &module->settings[i];
+        char values[256], left[64], standard[64];
+        setting_values(row, values, sizeof values);
+        cli_setting_text(row, row->standard, standard, sizeof standard);
+        snprintf(left, sizeof left, "--%s", row->name);
+        for (char *c = left; *c; c++)
+            *c = *c == '_' ? '-' : *c;
+        printf("  %-26s %s; %s (%s)\n", left, row->help, values, standard);
+    }
+}
+
+void cli_print_flags(cli_command_bit command) {
+    print_rows(command, false, "Flags");
+    print_rows(command, true,
+               "Lines: before the first FILE for all FILEs, after a FILE for it alone");
+    if (command & CLI_COMPARE || command & CLI_RENDER)
+        print_settings();
+}

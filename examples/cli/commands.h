@@ -1,0 +1,11 @@
+/* The commands of the program, one file each. Each takes its options and returns an exit code. */
+#ifndef LINEAO_CLI_COMMANDS_H
+#define LINEAO_CLI_COMMANDS_H
+
+#include "arguments.h"
+
+int cli_info(const cli_options *options);
+int cli_render(const cli_options *options);
+int cli_compare(const cli_options *options);
+
+#endif

@@ -1,0 +1,241 @@
+#include "dump.h"
+
+#include "image.h"
+#include "report.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* ---- JSON ------------------------------------------------------------------------------- */
+
+cJSON *cli_json_float(float value) {
+    char text[32];
+    if (!isfinite(value))
+        return cJSON_CreateNull();
+    cli_shortest(value, text, sizeof text);
+    return cJSON_CreateRaw(text);
+}
+
+void cli_version(char text[32]) {
+    snprintf(text, 32, "%d.%d.%d", LAO_VERSION / 1000000, LAO_VERSION / 1000 % 1000,
+             LAO_VERSION % 1000);
+}
+
+bool cli_write_json(const char *path, cJSON *json) {
+    char *text = cJSON_Print(json);
+    bool ok = text != NULL || cli_fail("out of memory");
+    if (ok && path)
+        ok = cli_write_text(path, text);
+    else if (ok)
+        ok = (puts(text) >= 0 && fflush(stdout) == 0) ||
+             cli_fail("standard output cannot be written");
+    cJSON_free(text);
+    cJSON_Delete(json);
+    return ok;
+}
+
+static void add_floats(cJSON *object, const char *key, const float *values, int count) {
+    cJSON *array = cJSON_AddArrayToObject(object, key);
+    for (int i = 0; i < count; i++)
+        cJSON_AddItemToArray(array, cli_json_float(values[i]));
+}
+
+static void add_settings(cJSON *object, const lao_settings *settings) {
+    const lao_module *module = lao_lines_module();
+    float values[LAO_SETTING_COUNT];
+    cJSON *list = cJSON_AddObjectToObject(object, "settings");
+    lao_settings_resolve(module, settings, values);
+    for (uint32_t i = 0; i < module->setting_count; i++) {
+        const lao_setting_row *row = &module->settings[i];
+        char text[64];
+        cli_setting_text(row, values[i], text, sizeof text);
+        if (row->type == LAO_SETTING_ENUM)
+            cJSON_AddStringToObject(list, row->name, text);
+        else if (row->type == LAO_SETTING_BOOL)
+            cJSON_AddBoolToObject(list, row->name, values[i] > 0);
+        else
+            cJSON_AddItemToObject(list, row->name, cli_json_float(values[i]));
+    }
+}
+
+/* What the picture shows and how; its first set's settings stand outside too, for short. */
+static cJSON *describe(const cli_session *session, const cli_scene *scene, const cli_shot *shot) {
+    char version[32], *camera = camera_print(&shot->camera);
+    cJSON *json = cJSON_CreateObject();
+    cli_version(version);
+    cJSON_AddStringToObject(json, "version", version);
+    cJSON_AddStringToObject(json, "backend", session->backend);
+    cJSON_AddStringToObject(json, "device", cli_session_device(session));
+    cJSON_AddItemToObject(
+        json, "size", cJSON_CreateIntArray((const int[2]){(int)shot->width, (int)shot->height}, 2));
+    cJSON_AddItemToObject(json, "camera", camera ? cJSON_CreateRaw(camera) : NULL);
+    cJSON *matrices = cJSON_AddObjectToObject(json, "matrices"); /* column-major */
+    add_floats(matrices, "view", shot->view, 16);
+    add_floats(matrices, "projection", shot->projection, 16);
+    /* matrices and sphere are for points minus this */
+    cJSON_AddItemToObject(json, "origin", cJSON_CreateDoubleArray(scene->origin, 3));
+    add_floats(json, "sphere", shot->sphere, 4);
+    add_floats(json, "background", shot->background, 4);
+    cJSON_AddItemToObject(json, "time", cli_json_float(shot->time));
+    add_settings(json, &scene->sets[0].settings);
+    cJSON *sets = cJSON_AddArrayToObject(json, "sets");
+    for (uint32_t i = 0; i < scene->count; i++) {
+        const cli_set *set = &scene->sets[i];
+        cJSON *item = cJSON_CreateObject();
+        cJSON_AddStringToObject(item, set->source->path ? "path" : "scene", set->name);
+        cJSON_AddNumberToObject(item, "lines", set->lines.line_count);
+        cJSON_AddNumberToObject(item, "points", set->lines.point_count);
+        add_settings(item, &set->settings);
+        cJSON_AddItemToArray(sets, item);
+    }
+    free(camera);
+    return json;
+}
+
+cJSON *cli_timings(cli_session *session, const cli_shot *shot) {
+    lao_timing rows[256];
+    uint32_t count = sizeof rows / sizeof *rows;
+    if (lao_timings(session->context, session->view, rows, &count) != LAO_OK)
+        return NULL;
+    cJSON *json = cJSON_CreateObject();
+    cJSON_AddStringToObject(json, "backend", session->backend);
+    cJSON_AddStringToObject(json, "device", cli_session_device(session));
+    cJSON_AddItemToObject(
+        json, "size", cJSON_CreateIntArray((const int[2]){(int)shot->width, (int)shot->height}, 2));
+    cJSON_AddItemToObject(json, "frame_ms", cli_json_float((float)session->milliseconds));
+    cJSON *passes = cJSON_AddArrayToObject(json, "passes");
+    for (uint32_t i = 0; i < count && i < sizeof rows / sizeof *rows; i++) {
+        cJSON *item = cJSON_CreateObject();
+        cJSON_AddStringToObject(item, "pass", rows[i].pass);
+        cJSON_AddNumberToObject(item, "set", rows[i].set);
+        cJSON_AddNumberToObject(item, "level", rows[i].level);
+        cJSON_AddItemToObject(item, "ms", cli_json_float((float)rows[i].milliseconds));
+        cJSON_AddItemToArray(passes, item);
+    }
+    return json;
+}
+
+/* ---- OpenEXR ---------------------------------------------------------------------------- */
+
+enum { PARTS = 32, CHANNELS = 32, NAME = 32 };
+
+/* Channels under way: every one has its name, its values and the part that it belongs to. */
+typedef struct plane {
+    char name[NAME];
+    float *values;
+} plane;
+
+typedef struct exr_writer {
+    image_part parts[PARTS];
+    char part_names[PARTS][NAME];
+    image_channel channels[PARTS][CHANNELS];
+    plane planes[PARTS * 4 + CHANNELS];
+    uint32_t part_count, plane_count, width, height; /* of the first part */
+} exr_writer;
+
+/* The first part for images of full size, else the part of that name, which may be new; or NULL. */
+static image_part *find_part(exr_writer *w, const char *channel, const lao_read_info *info) {
+    uint32_t i = 0;
+    if (info->width != w->width || info->height != w->height) {
+        size_t length = strcspn(channel, ".");
+        for (i = 1; i < w->part_count; i++) {
+            if (strlen(w->part_names[i]) == length &&
+                strncmp(w->part_names[i], channel, length) == 0)
+                break;
+        }
+        if (i == PARTS)
+            return NULL;
+        snprintf(w->part_names[i], NAME, "%.*s", (int)length, channel);
+    }
+    if (i >= w->part_count) {
+        w->part_count = i + 1;
+        w->parts[i].width = info->width;
+        w->parts[i].height = info->height;
+        w->parts[i].name = w->part_names[i];
+        w->parts[i].channels = w->channels[i];
+    }
+    return &w->parts[i];
+}
+
+/* "axial%d.C" with the level in place. */
+static void channel_name(const char *pattern, uint32_t level, char name[NAME]) {
+    const char *digit = strstr(pattern, "%d");
+    if (digit)
+        snprintf(name, NAME, "%.*s%u%s", (int)(digit - pattern), pattern, level, digit + 2);
+    else
+        snprintf(name, NAME, "%s", pattern);
+}
+
+static bool add_channel(exr_writer *w, const char *name, const float *data, uint32_t channel,
+                        const lao_read_info *info) {
+    size_t count = (size_t)info->width * info->height;
+    image_part *part = find_part(w, name, info);
+    if (!part || part->channel_count == CHANNELS ||
+        w->plane_count == sizeof w->planes / sizeof *w->planes)
+        return cli_fail("%s: too many channels for one file", name);
+    plane *p = &w->planes[w->plane_count];
+    p->values = cli_new(count, sizeof *p->values);
+    if (!p->values)
+        return false;
+    w->plane_count++;
+    snprintf(p->name, NAME, "%s", name);
+    for (size_t i = 0; i < count; i++)
+        p->values[i] = data[i * info->channels + channel];
+    image_channel *out = &w->channels[part - w->parts][part->channel_count++];
+    out->name = p->name;
+    out->data = p->values;
+    return true;
+}
+
+static bool add_image(exr_writer *w, cli_session *session, const lao_image_row *row) {
+    bool ok = true;
+    for (uint32_t level = 0; ok; level++) {
+        lao_read_info info;
+        float *data = cli_session_image(session, row->name, level, &info);
+        if (!data)
+            return info.width == 0; /* the plan has no such image or level */
+        for (uint32_t c = 0; ok && c < 4 && c < info.channels; c++) {
+            char name[NAME];
+            if (!row->channels[c])
+                continue;
+            channel_name(row->channels[c], level, name);
+            ok = add_channel(w, name, data, c, &info);
+        }
+        free(data);
+    }
+    return false;
+}
+
+static bool add_images(exr_writer *w, cli_session *session, const cli_scene *scene,
+                       const cli_shot *shot) {
+    const lao_module *module = lao_lines_module();
+    uint32_t factor = (uint32_t)lao_settings_filled(&scene->sets[0].settings).supersampling;
+    w->width = shot->width * factor;
+    w->height = shot->height * factor;
+    snprintf(w->part_names[0], NAME, "full");
+    for (uint32_t i = 0; i < module->image_count; i++) {
+        if (module->images[i].channels[0] && !add_image(w, session, &module->images[i]))
+            return false;
+    }
+    return true;
+}
+
+bool cli_dump(const char *path, cli_session *session, const cli_scene *scene,
+              const cli_shot *shot) {
+    char error[IMAGE_ERROR_SIZE];
+    exr_writer *w = calloc(1, sizeof *w);
+    cJSON *json = describe(session, scene, shot);
+    char *text = cJSON_PrintUnformatted(json);
+    bool ok = (w && text) || cli_fail("out of memory");
+    ok = ok && add_images(w, session, scene, shot);
+    if (ok && !image_write_exr(path, w->parts, w->part_count, text, error))
+        ok = cli_fail("%s", error);
+    for (uint32_t i = 0; w && i < w->plane_count; i++)
+        free(w->planes[i].values);
+    cJSON_free(text);
+    cJSON_Delete(json);
+    free(w);
+    return ok;
+}

@@ -1,0 +1,27 @@
+/* Numbers of a frame as files: OpenEXR of every image, JSON of what was drawn and of timings. */
+#ifndef LINEAO_CLI_DUMP_H
+#define LINEAO_CLI_DUMP_H
+
+#include "session.h"
+
+#include <cJSON.h>
+
+/* Writes every image of the frame graph that has channel names, as 32-bit floats, top row first.
+ * The images of full size are the first part; others are parts named after the image ("axial1").
+ * The string attribute "lineao" describes the frame. The session's view must have been made with
+ * LAO_VIEW_KEEP_IMAGES. False: reported. */
+bool cli_dump(const char *path, cli_session *session, const cli_scene *scene, const cli_shot *shot);
+
+/* Milliseconds of the last frame, which was rendered with LAO_FRAME_TIMINGS. NULL: reported. */
+cJSON *cli_timings(cli_session *session, const cli_shot *shot);
+
+/* Writes JSON to a file, or to standard output when path is NULL; deletes it. False: reported. */
+bool cli_write_json(const char *path, cJSON *json);
+
+/* A number with as few digits as read back to the same float. */
+cJSON *cli_json_float(float value);
+
+/* "0.1.0" */
+void cli_version(char text[32]);
+
+#endif

@@ -1,0 +1,76 @@
+/* Where a frame is taken from. */
+#include "session.h"
+
+#include "report.h"
+
+#include <math.h>
+#include <string.h>
+
+/* Centre and radius of the box around all points, at least half a line wide, as lineao would. */
+static void find_sphere(const cli_scene *scene, float sphere[4]) {
+    double low[3] = {0, 0, 0}, high[3] = {0, 0, 0}, squared = 0, widest = 0;
+    bool any = false;
+    for (uint32_t s = 0; s < scene->count; s++) {
+        const io_lines *lines = &scene->sets[s].lines;
+        lao_settings settings = lao_settings_filled(&scene->sets[s].settings);
+        widest = settings.width > widest ? settings.width : widest;
+        for (uint32_t i = 0; i < lines->point_count; i++) {
+            const float *p = lines->points + 3 * (size_t)i;
+            if (!isfinite(p[0]) || !isfinite(p[1]) || !isfinite(p[2]))
+                continue;
+            for (int k = 0; k < 3; k++) {
+                low[k] = any && low[k] < p[k] ? low[k] : p[k];
+                high[k] = any && high[k] > p[k] ? high[k] : p[k];
+            }
+            any = true;
+        }
+    }
+    for (int k = 0; k < 3; k++) {
+        sphere[k] = (float)(0.5 * (low[k] + high[k]));
+        squared += 0.25 * (high[k] - low[k]) * (high[k] - low[k]);
+    }
+    sphere[3] = (float)fmax(sqrt(squared), 0.5 * widest);
+}
+
+static void fit_camera(const cli_options *options, const cli_scene *scene, double aspect,
+                       camera_pose *out) {
+    camera_fit fit;
+    camera_fit_begin(&fit, scene->direction, scene->up, aspect, 0.05, options->ortho ? 0 : 30);
+    for (uint32_t s = 0; s < scene->count; s++)
+        camera_fit_add(&fit, scene->sets[s].lines.points, scene->sets[s].lines.point_count);
+    camera_fit_end(&fit, out);
+    for (int k = 0; k < 3; k++) {
+        out->eye[k] += scene->origin[k];
+        out->center[k] += scene->origin[k];
+    }
+}
+
+bool cli_shot_make(const cli_options *options, const cli_scene *scene, cli_shot *out) {
+    char error[CAMERA_ERROR_SIZE];
+    double aspect = (double)options->size[0] / options->size[1];
+    memset(out, 0, sizeof *out);
+    out->width = options->size[0];
+    out->height = options->size[1];
+    out->time = (float)options->time;
+    for (int k = 0; k < 4; k++)
+        out->background[k] = (float)options->background[k];
+    find_sphere(scene, out->sphere);
+    if (!options->camera)
+        fit_camera(options, scene, aspect, &out->camera);
+    else if (!camera_read(options->camera, &out->camera, error))
+        return cli_fail("%s", error);
+    /* From the absolute camera, so that a saved one gives the same matrices to the bit. */
+    camera_pose local = out->camera;
+    double center[3];
+    for (int k = 0; k < 3; k++) {
+        local.eye[k] -= scene->origin[k];
+        local.center[k] -= scene->origin[k];
+        center[k] = out->sphere[k];
+    }
+    float widest = 0; /* a ribbon reaches out of the ball of its points */
+    for (uint32_t s = 0; s < scene->count; s++)
+        widest = fmaxf(widest, lao_settings_filled(&scene->sets[s].settings).width);
+    camera_matrices(&local, aspect, center, (double)out->sphere[3] + widest, true, out->view,
+                    out->projection);
+    return true;
+}
