@@ -65,7 +65,7 @@ static void make_boxes(stage *s) {
         {{-40, -12, -32}, {40, -10, 32}, {0.70f, 0.70f, 0.68f, 1}}, /* the ground */
         {{-16, -10, -8}, {2, 12, 6}, {0.80f, 0.40f, 0.32f, 1}},     /* two that meet */
         {{-4, -10, -2}, {12, 4, 12}, {0.85f, 0.70f, 0.35f, 1}},
-        {{18, -10, -12}, {30, 10, 4}, {0.40f, 0.70f, 0.40f, 1}}, /* the late one */
+        {{17, -10, -4}, {29, 8, 12}, {0.40f, 0.70f, 0.40f, 1}}, /* the late one */
     };
     /* The host multiplies its matrices once; lineao gets them apart. */
     const float *v = s->camera.view, *p = s->camera.projection;

@@ -36,7 +36,7 @@ static void colour_direction(const io_lines *lines, uint8_t *colors) {
         for (uint32_t i = first; i <= last; i++) {
             const float *a = lines->points + 3 * (size_t)(i > first ? i - 1 : i);
             const float *b = lines->points + 3 * (size_t)(i < last ? i + 1 : i);
-            if (memcmp(a, b, 3 * sizeof *a) != 0)
+            if (a[0] != b[0] || a[1] != b[1] || a[2] != b[2])
                 color =
                     direction_color((double)b[0] - a[0], (double)b[1] - a[1], (double)b[2] - a[2]);
             else if (done == first && i < last)

@@ -97,7 +97,9 @@ static bool show(const cli_options *options, const io_lines *files) {
 /* Nothing is printed unless every file can be read. */
 int cli_info(const cli_options *options) {
     io_lines *files = calloc(options->file_count, sizeof *files);
-    bool ok = files != NULL || cli_fail("out of memory");
+    bool ok = files != NULL;
+    if (!ok)
+        cli_fail("out of memory");
     for (uint32_t i = 0; ok && i < options->file_count; i++)
         ok = cli_read_file(&options->files[i], &files[i]);
     ok = ok && show(options, files);

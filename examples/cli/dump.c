@@ -228,7 +228,9 @@ bool cli_dump(const char *path, cli_session *session, const cli_scene *scene,
     exr_writer *w = calloc(1, sizeof *w);
     cJSON *json = describe(session, scene, shot);
     char *text = cJSON_PrintUnformatted(json);
-    bool ok = (w && text) || cli_fail("out of memory");
+    bool ok = w && text;
+    if (!ok)
+        cli_fail("out of memory");
     ok = ok && add_images(w, session, scene, shot);
     if (ok && !image_write_exr(path, w->parts, w->part_count, text, error))
         ok = cli_fail("%s", error);

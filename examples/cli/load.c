@@ -141,7 +141,9 @@ bool cli_scene_load(const cli_options *options, cli_scene *out) {
     scene.beat[1] = -INFINITY;
     camera_view("iso", scene.direction, scene.up);
     scene.sets = cli_new(count, sizeof *scene.sets);
-    bool ok = scene.sets != NULL;
+    if (!scene.sets)
+        return false;
+    bool ok = true;
     for (uint32_t i = 0; ok && i < count; i++)
         ok = load_set(options, options->file_count ? &options->files[i] : &options->all, &scene);
     if (!ok) {

@@ -185,8 +185,8 @@ bool cli_write_text(const char *path, const char *text) {
 }
 
 void *cli_new(size_t count, size_t size) {
-    count = count > 0 ? count : 1;
-    void *memory = size > 0 && count > SIZE_MAX / size ? NULL : malloc(count * size);
+    size_t least = count > 0 ? count : 1;
+    void *memory = size == 0 || least > SIZE_MAX / size ? NULL : malloc(least * size);
     if (!memory)
         cli_fail("out of memory");
     return memory;

@@ -85,10 +85,13 @@ static bool shrink(uint8_t **pixels, uint32_t width, uint32_t height, uint32_t f
 }
 
 bool sheet_add(cli_sheet *sheet, sheet_row row) {
-    uint32_t factor = (row.width + WIDEST - 1) / WIDEST;
+    uint32_t factor = row.width > WIDEST ? (row.width + WIDEST - 1) / WIDEST : 1;
     sheet_row *rows = realloc(sheet->rows, (sheet->count + 1) * sizeof *rows);
-    bool ok = rows != NULL || cli_fail("out of memory");
-    sheet->rows = rows ? rows : sheet->rows;
+    bool ok = rows != NULL;
+    if (ok)
+        sheet->rows = rows;
+    else
+        cli_fail("out of memory");
     for (int c = 0; c < SHEET_COLUMNS && ok && factor > 1; c++)
         ok = shrink(&row.pixels[c], row.width, row.height, factor, c == SHEET_COLUMNS - 1);
     for (int c = 0; c < SHEET_COLUMNS && !ok; c++)

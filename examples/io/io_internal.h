@@ -142,10 +142,10 @@ void io_reader_free(io_reader *reader);
 /* Both write the error text and are false, so that a reader may `return io_fail(...)`. */
 bool io_error_set(io_error *error, const char *format, ...) IO_PRINTF(2, 3);
 #define io_fail(reader, ...) (io_error_set((reader)->error, __VA_ARGS__) && false)
-bool io_warn(io_reader *reader, const char *format, ...)
-    IO_PRINTF(2, 3); /* false when memory is short */
-bool io_tick(io_reader *reader, size_t done,
-             size_t total); /* reports progress; false when the user cancels */
+/* Adds a warning; false when memory is short. */
+bool io_warn(io_reader *reader, const char *format, ...) IO_PRINTF(2, 3);
+/* Reports progress; false when the user cancels. */
+bool io_tick(io_reader *reader, size_t done, size_t total);
 
 /* Zeroed memory for count items, freed with the reader; NULL (error written) when the read's limit
  * is passed. */

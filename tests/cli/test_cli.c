@@ -95,9 +95,9 @@ static void write_lines(const char *path, float x, double origin) {
     for (uint32_t i = 0; i < LINES * POINTS; i++) {
         uint32_t line = i / POINTS;
         offsets[line + 1] = i + 1;
-        points[3 * i] = x + (float)line;
-        points[3 * i + 1] = (float)(i % POINTS) * 2;
-        points[3 * i + 2] = (float)(line % 3);
+        points[3 * (size_t)i] = x + (float)line;
+        points[3 * (size_t)i + 1] = (float)(i % POINTS) * 2;
+        points[3 * (size_t)i + 2] = (float)(line % 3);
         values[i] = (float)i;
     }
     offsets[0] = 0;
@@ -381,7 +381,7 @@ static void test_dump(void **state) {
     uint8_t *pixels;
     assert_true(image_read_png("d.png", 3, &width, &height, &pixels, NULL));
     for (uint32_t i = 0; i < 96 * 64; i++)
-        assert_float_equal(out[i] * 255, pixels[3 * i], 1e-3);
+        assert_float_equal(out[i] * 255, pixels[3 * (size_t)i], 1e-3);
     free(pixels);
     check_attribute(&exr);
     image_exr_free(&exr);
