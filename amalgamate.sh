@@ -1,6 +1,6 @@
 #!/bin/sh
 # Makes lineao_shaders.h (GLSL lines and SPIR-V words of every pass, from lineao.h's shared text and shaders/) and
-# dist/lineao_all.h (everything in one file). The same inputs give the same bytes: no clock, no locale, no paths.
+# dist/lineao_all.h (everything in one file), and the generated parts of README.md and docs/algorithm.md. The same inputs give the same bytes: no clock, no locale, no paths.
 #   ./amalgamate.sh            write both
 #   ./amalgamate.sh --check    prove that the committed lineao_shaders.h is current and that dist/ compiles
 # Needs cc, awk, glslangValidator.
@@ -187,7 +187,29 @@ make_all() {
     printf '*/\n'
 }
 
+# Text between `<!-- NAME begin -->` and `<!-- NAME end -->` of a document is made here too: document, name, kind of fence
+documented() {
+    "$work/shader_text" "$2" >"$work/insert"
+    awk -v name="$2" -v fence="$3" -v insert="$work/insert" '
+        $0 == "<!-- " name " end -->" {inside = 0}
+        !inside {print}
+        $0 == "<!-- " name " begin -->" {
+            inside = 1
+            if (fence != "") print "```" fence
+            while ((getline line < insert) > 0) print line
+            if (fence != "") print "```"
+        }' "$1" >"$work/document"
+    if [ "${check-}" ]; then
+        cmp -s "$work/document" "$1" || die "$1 is stale: run ./amalgamate.sh and commit it"
+    else
+        cmp -s "$work/document" "$1" || cp "$work/document" "$1"
+    fi
+}
+
+[ "${1-}" != --check ] || check=1
 ${CC:-cc} -std=c99 -O1 -ffp-contract=off -I. -o "$work/shader_text" tools/shader_text.c -lm
+documented README.md table ""
+documented docs/algorithm.md graph dot
 make_shaders_header >"$work/lineao_shaders.h"
 if [ "${1-}" = --check ]; then
     cmp -s "$work/lineao_shaders.h" lineao_shaders.h || die "lineao_shaders.h is stale: run ./amalgamate.sh and commit it"

@@ -336,8 +336,8 @@ LAO_API const lao_pass_row *lao_passes(int *count);
     X(light_specular, FLOAT, 0, 1, 1, 0, "", "", "specular part of the occlusion light")                               \
     X(light_exponent, INT, 1, 1000, 100, 1, "", "", "Phong exponent of the occlusion light")                           \
     X(ambient, FLOAT, 0, 1, 0.1f, 0, "", "", "ambient part of the line illumination")                                  \
-    X(diffuse, FLOAT, 0, 2, 1, 0, "", "", "diffuse part of the line illumination")                                     \
-    X(specular, FLOAT, 0, 2, 1, 0, "", "", "specular part of the line illumination")                                   \
+    X(diffuse, FLOAT, 0, 2, 0.9f, 0, "", "", "diffuse part of the line illumination")                                     \
+    X(specular, FLOAT, 0, 2, 0.35f, 0, "", "", "specular part of the line illumination")                                   \
     X(shininess, INT, 1, 1000, 100, 1, "", "", "Phong exponent of the line illumination")                              \
     X(supersampling, INT, 1, 4, 2, 1, "", "", "samples per pixel and axis; also scales time and memory")               \
     X(smoothing, INT, 0, 10, 0, 1, "", "", "binomial blurs of the occlusion; for debugging: leaks shadows")            \

@@ -600,7 +600,7 @@ static lao_result lao__vk_sampler_make(lao__vk *vk) {
 static lao_result lao__vk_quads_make(lao__vk *vk) {
     uint32_t quad, corner;
     uint16_t *index;
-    lao_result result = lao__vk_buffer_make(vk, LAO__VK_QUADS * 6 * sizeof(uint16_t),
+    lao_result result = lao__vk_buffer_make(vk, (VkDeviceSize)LAO__VK_QUADS * 6 * sizeof(uint16_t),
                                             VK_BUFFER_USAGE_INDEX_BUFFER_BIT, VK_FORMAT_UNDEFINED,
                                             "lineao quads", &vk->quads);
     if (result)
@@ -624,7 +624,7 @@ static lao_result lao__vk_common_make(lao__vk *vk) {
     slot.format = LAO_FORMAT_RGBA8;
     slot.width = slot.height = slot.sampled = 1;
     for (i = 0; i < lao_shader_count; i++) {
-        if (!strcmp(lao_shaders[i].name, "fullscreen"))
+        if (strcmp(lao_shaders[i].name, "fullscreen") == 0)
             vk->fullscreen = &lao_shaders[i];
     }
     vk->programs = (lao__vk_program *)lao__vk_alloc(vk, (vk->host->graph->shader_count + 1) *
@@ -951,9 +951,9 @@ static lao_result lao__vk_pipeline_use(lao__vk *vk, const lao__vk_key *key, cons
                                        lao__vk_pipeline **used) {
     lao__vk_pipeline *found = (lao__vk_pipeline *)vk->pipelines;
     lao_result result;
-    if (*used && !memcmp(&(*used)->key, key, sizeof *key))
+    if (*used && memcmp(&(*used)->key, key, sizeof *key) == 0)
         return LAO_OK;
-    while (found && memcmp(&found->key, key, sizeof *key))
+    while (found && memcmp(&found->key, key, sizeof *key) != 0)
         found = (lao__vk_pipeline *)found->object.next;
     if (!found) {
         found = (lao__vk_pipeline *)lao__vk_alloc(vk, sizeof *found);
@@ -997,7 +997,7 @@ static void lao__vk_build_free(lao__vk *vk, lao__vk_object *object) {
         lao__vk_buffer_free(vk, &build->frames[i].uniforms);
     }
     vk->call.DestroyQueryPool(vk->device, build->queries, NULL);
-    lao__vk_free(vk, build->sets, build->set_capacity * sizeof *build->sets);
+    lao__vk_free(vk, build->sets, build->set_capacity * sizeof(VkDescriptorSet));
     lao__vk_free(vk, build, build->size);
 }
 
@@ -1156,7 +1156,7 @@ static lao_result lao__vk_frame_fit(const lao__vk *vk, lao__vk_frame *frame,
         need->texels > frame->capacity.texels) {
         lao_result result;
         vk->call.DestroyDescriptorPool(vk->device, frame->pool, NULL);
-        memset(&frame->pool, 0, sizeof frame->pool);
+        memset(&frame->pool, 0, sizeof(VkDescriptorPool));
         memset(&frame->capacity, 0, sizeof frame->capacity);
         result = lao__vk_pool_make(vk, need, &frame->pool);
         if (result)
@@ -1186,9 +1186,9 @@ static lao_result lao__vk_frame_begin(lao__vk *vk, lao__vk_build *build,
     lao_result result = LAO_OK;
     uint32_t i;
     if (need.sets > build->set_capacity) {
-        lao__vk_free(vk, build->sets, build->set_capacity * sizeof *build->sets);
+        lao__vk_free(vk, build->sets, build->set_capacity * sizeof(VkDescriptorSet));
         build->set_capacity = 0;
-        build->sets = (VkDescriptorSet *)lao__vk_alloc(vk, need.sets * sizeof *build->sets);
+        build->sets = (VkDescriptorSet *)lao__vk_alloc(vk, need.sets * sizeof(VkDescriptorSet));
         if (!build->sets)
             return LAO_ERROR_OUT_OF_MEMORY;
         build->set_capacity = need.sets;
@@ -1212,7 +1212,7 @@ static VkImageView lao__vk_attachment_view(const lao__vk_build *build,
     VkImageView view;
     if (!lent)
         return build->slots[instance->slot[execution->parity & 1]].view;
-    memcpy(&view, &lent->native_view, sizeof view);
+    memcpy(&view, &lent->native_view, sizeof(VkImageView));
     return view;
 }
 
@@ -1391,7 +1391,7 @@ static VkImageMemoryBarrier2 lao__vk_barrier_lent(const lao_image *image,
     }
     if (row->discard)
         before.layout = VK_IMAGE_LAYOUT_UNDEFINED;
-    memcpy(&handle, &image->native, sizeof handle);
+    memcpy(&handle, &image->native, sizeof(VkImage));
     return lao__vk_barrier(handle, (VkFormat)image->native_format, before, after);
 }
 

@@ -1,5 +1,6 @@
 /* What amalgamate.sh cannot know from text alone: `settings` prints the accessors of the settings block, `levels` the
-   unrolled samples of the shipped count, from the same functions that the tests prove. Developer's tool, not shipped. */
+   unrolled samples of the shipped count, from the same functions that the tests prove; `table` and `graph` print the
+   settings for README.md and the frame graph for docs/algorithm.md. Developer's tool, not shipped. */
 #define LINEAO_IMPLEMENTATION
 #include "lineao.h"
 
@@ -12,6 +13,52 @@ static void print_settings(void) {
     for (i = 0; i < module->setting_count; i++) {
         printf("#define lao_setting_%s (lao_settings_rows[%u].%c)\n", module->settings[i].name, i / 4, "xyzw"[i % 4]);
     }
+}
+
+/* The settings as a Markdown table. */
+static void print_table(void) {
+    const lao_module *module = lao_lines_module();
+    uint32_t i;
+    printf("| setting | values | default | unit | meaning |\n|---|---|---|---|---|\n");
+    for (i = 0; i < module->setting_count; i++) {
+        const lao_setting_row *row = &module->settings[i];
+        char standard[64];
+        const char *c;
+        snprintf(standard, sizeof standard, "%g", (double)row->standard);
+        printf("| `%s` | ", row->name);
+        if (row->type == LAO_SETTING_ENUM) {
+            int index = 0;
+            size_t n;
+            for (c = row->choices; *c; c += n + (c[n] != 0), index++) {
+                n = strcspn(c, "|");
+                printf("%s`%.*s`", index ? ", " : "", (int)n, c);
+                if (index == (int)row->standard) {
+                    snprintf(standard, sizeof standard, "`%.*s`", (int)n, c);
+                }
+            }
+        } else if (row->type == LAO_SETTING_BOOL) {
+            printf("`off`, `on`");
+            snprintf(standard, sizeof standard, "%s", row->standard > 0 ? "`on`" : "`off`");
+        } else {
+            printf("%g .. %g%s", (double)row->minimum, (double)row->maximum, row->type == LAO_SETTING_INT ? ", whole" : "");
+        }
+        printf(" | %s | %s | ", standard, row->unit);
+        for (c = row->help; *c; c++) {
+            printf(*c == '|' ? "\\%c" : "%c", *c);
+        }
+        printf(" |\n");
+    }
+}
+
+static void print_graph_text(void *user, const char *text) {
+    (void)user;
+    fputs(text, stdout);
+}
+
+/* The frame graph as Graphviz text. */
+static void print_graph(void) {
+    const lao_module *module = lao_lines_module();
+    lao_graph_print(&module, 1, print_graph_text, NULL);
 }
 
 static void print_levels(void) {
@@ -42,6 +89,14 @@ int main(int argc, char **argv) {
         print_levels();
         return 0;
     }
-    fprintf(stderr, "usage: shader_text settings|levels\n");
+    if (argc == 2 && strcmp(argv[1], "table") == 0) {
+        print_table();
+        return 0;
+    }
+    if (argc == 2 && strcmp(argv[1], "graph") == 0) {
+        print_graph();
+        return 0;
+    }
+    fprintf(stderr, "usage: shader_text settings|levels|table|graph\n");
     return 2;
 }

@@ -347,6 +347,11 @@ static bool check(const parser *p) {
         return cli_fail("%s: is for embedded scenes, and a FILE is given; %s",
                         o->scene ? "--scene" : "--lines",
                         o->scene ? "leave one of them out" : "thin a file with --every N");
+    if (o->file_count == 0 && (o->all.every || o->all.min_length > 0 || o->all.bundle))
+        return cli_fail("%s: thins FILEs, and none is given; --lines N is for embedded scenes",
+                        o->all.every    ? "--every"
+                        : o->all.bundle ? "--bundle"
+                                        : "--min-length");
     if (o->camera && (o->view || o->ortho))
         return cli_fail("%s: is for the automatic camera, and --camera is given; leave one out",
                         o->view ? "--view" : "--ortho");

@@ -33,7 +33,7 @@ static void colour_direction(const io_lines *lines, uint8_t *colors) {
     for (uint32_t line = 0; line < lines->line_count; line++) {
         uint32_t first = lines->offsets[line], last = lines->offsets[line + 1] - 1, done = first;
         rgb color = {0.7, 0.7, 0.7};
-        for (uint32_t i = first; i <= last; i++) {
+        for (uint32_t i = first; i < lines->offsets[line + 1]; i++) { /* may have no point */
             const float *a = lines->points + 3 * (size_t)(i > first ? i - 1 : i);
             const float *b = lines->points + 3 * (size_t)(i < last ? i + 1 : i);
             if (a[0] != b[0] || a[1] != b[1] || a[2] != b[2])

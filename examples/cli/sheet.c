@@ -77,7 +77,8 @@ static bool shrink(uint8_t **pixels, uint32_t width, uint32_t height, uint32_t f
                 most = value > most ? value : most;
             }
         }
-        out[i] = (uint8_t)(strongest ? most : (sum + count / 2) / count);
+        uint32_t mean = count > 0 ? (sum + count / 2) / count : 0;
+        out[i] = (uint8_t)(strongest ? most : mean);
     }
     free(*pixels);
     *pixels = out;

@@ -158,6 +158,7 @@ static void test_wrong_usage(void **state) {
     expect_fault(RUN("render --preset clasic -o x.png"), 2, "classic");
     expect_fault(RUN("render --camera a --view iso -o x.png"), 2, "--view");
     expect_fault(RUN("render a.trk --lines 5 -o x.png"), 2, "--every");
+    expect_fault(RUN("render --every 5 -o x.png"), 2, "--every");
 }
 
 static void test_failures(void **state) {
@@ -226,7 +227,7 @@ static void test_info(void **state) {
 
 /* Every flag that changes the picture does, and those that should not do not. */
 static void test_flags(void **state) {
-    static const char *const same[] = {"--color #ffe094",      "--time 0",
+    static const char *const same[] = {"--occlusion off",      "--time 0",
                                        "--backend vk",         "--set width=0.5",
                                        "--background #f4f4f2", "--scene aorta"};
     static const char *const other[] = {"--width 2",
@@ -253,6 +254,9 @@ static void test_flags(void **state) {
         expect_ok(RUN("render " PLAIN "%s -o flag2.png", other[i]));
         assert_false(same_pictures("flag.png", "flag2.png"));
     }
+    expect_ok(RUN("render " PLAIN "--color #3366cc -o flag.png"));
+    expect_ok(RUN("render " PLAIN "--color=0.2,0.4,0.8 -o flag2.png"));
+    assert_true(same_pictures("flag.png", "flag2.png"));
 }
 
 static void test_flags_of_files(void **state) {
@@ -413,6 +417,7 @@ static void test_compare(void **state) {
     assert_true(image_read_png("sheet.png", 3, &width, &height, &pixels, NULL));
     assert_true(width > 3 * 96 && height > 10 * 64);
     free(pixels);
+    check_compare(RUN("compare --scene stress --size 96x64 --json"));
     program_run run = RUN("compare " PLAIN "--preset classic");
     assert_int_equal(run.code, 0);
     assert_int_equal(strncmp(run.out, "image ", 6), 0);

@@ -56,12 +56,16 @@ lao_logger core_logger(core_host *host) {
 
 static lao_backend inner; /* the same functions in every context */
 
-static lao_result window_attach(const lao_backend *backend, const lao_host *host, void **self, lao_backend_caps *caps) {
+static lao_result window_attach(const lao_backend *backend, const lao_host *host, void **self,
+                                lao_backend_caps *caps) {
     lao_result result = inner.attach(backend, host, self, caps);
     if (result == LAO_OK) {
-        caps->max_buffer_texels = core_seen.max_buffer_texels ? core_seen.max_buffer_texels : caps->max_buffer_texels;
-        caps->max_texture_units = core_seen.max_texture_units ? core_seen.max_texture_units : caps->max_texture_units;
-        caps->max_image_size = core_seen.max_image_size ? core_seen.max_image_size : caps->max_image_size;
+        caps->max_buffer_texels =
+            core_seen.max_buffer_texels ? core_seen.max_buffer_texels : caps->max_buffer_texels;
+        caps->max_texture_units =
+            core_seen.max_texture_units ? core_seen.max_texture_units : caps->max_texture_units;
+        caps->max_image_size =
+            core_seen.max_image_size ? core_seen.max_image_size : caps->max_image_size;
     }
     return result;
 }
@@ -71,7 +75,8 @@ static lao_result window_buffer_create(void *self, const lao_buffer_desc *desc, 
     if (result == LAO_OK) {
         core_seen.buffers_alive++;
     }
-    if (result == LAO_OK && core_seen.buffer_count < CORE_BUFFERS && desc->texel_count <= CORE_TEXELS) {
+    if (result == LAO_OK && core_seen.buffer_count < CORE_BUFFERS &&
+        desc->texel_count <= CORE_TEXELS) {
         core_seen.buffers[core_seen.buffer_count].format = desc->format;
         core_seen.buffers[core_seen.buffer_count].texel_count = desc->texel_count;
         memcpy(core_seen.buffers[core_seen.buffer_count].texels, desc->data,
@@ -86,7 +91,8 @@ static void window_buffer_destroy(void *self, void *buffer) {
     inner.buffer_destroy(self, buffer);
 }
 
-static lao_result window_view_prepare(void *self, void *view, const lao_plan *plan, const lao_shader *const *shaders) {
+static lao_result window_view_prepare(void *self, void *view, const lao_plan *plan,
+                                      const lao_shader *const *shaders) {
     core_seen.prepares++;
     return inner.view_prepare(self, view, plan, shaders);
 }
@@ -104,7 +110,9 @@ static lao_result window_execute(void *self, void *view, const lao_execution *ex
     return result;
 }
 
-void core_window_clear(void) { memset(&core_seen, 0, sizeof core_seen); }
+void core_window_clear(void) {
+    memset(&core_seen, 0, sizeof core_seen);
+}
 
 lao_backend core_backend(uint32_t fail_at) {
     lao_null_desc desc;
@@ -143,4 +151,6 @@ uint32_t core_random(uint32_t *state) {
     return x ^ (x >> 15);
 }
 
-double core_between(uint32_t *state, double low, double high) { return low + (high - low) * core_random(state) / 4294967295.0; }
+double core_between(uint32_t *state, double low, double high) {
+    return low + (high - low) * core_random(state) / 4294967295.0;
+}

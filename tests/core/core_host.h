@@ -1,5 +1,5 @@
-/* What the tests of the core share: a host that counts and refuses memory and keeps the log, and the null backend with a
-   window in it: what is uploaded and executed can be looked at. */
+/* What the tests of the core share: a host that counts and refuses memory and keeps the log, and
+   the null backend with a window in it: what is uploaded and executed can be looked at. */
 #ifndef CORE_HOST_H
 #define CORE_HOST_H
 
@@ -25,7 +25,8 @@ enum { CORE_BUFFERS = 64, CORE_TEXELS = 256 };
 
 /* What went through the seam since core_window_clear. One window for the whole program. */
 typedef struct core_window {
-    uint32_t max_buffer_texels, max_texture_units, max_image_size; /* 0: those of the null backend */
+    uint32_t max_buffer_texels, max_texture_units,
+        max_image_size; /* 0: those of the null backend */
     uint32_t buffer_count, buffers_alive;
     struct {
         lao_format format;
@@ -43,7 +44,8 @@ void core_window_clear(void);
 /* The null backend behind the window. `fail_at`: the n-th backend call fails, 0: none. */
 lao_backend core_backend(uint32_t fail_at);
 
-/* The camera of many tests: at the origin, looking along -z with 90 degrees, clip depth [0, w], near 1, far 100. */
+/* The camera of many tests: at the origin, looking along -z with 90 degrees, clip depth [0, w],
+ * near 1, far 100. */
 lao_camera core_camera(void);
 
 /* Even, repeatable numbers: [0, 2^32) and [low, high]. */

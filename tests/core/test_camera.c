@@ -1,5 +1,6 @@
-/* A camera may come in any convention: {perspective, orthographic, off-centre} x {normal, reverse depth} x {-1..1, 0..1} x
-   {left-, right-handed} x {y up, y down} all give the same canonical camera, and what cannot be drawn is refused. */
+/* A camera may come in any convention: {perspective, orthographic, off-centre} x {normal, reverse
+   depth} x {-1..1, 0..1} x {left-, right-handed} x {y up, y down} all give the same canonical
+   camera, and what cannot be drawn is refused. */
 #include "core_host.h"
 
 #include <setjmp.h>
@@ -12,7 +13,9 @@ enum { PERSPECTIVE, PERSPECTIVE_OFF, ORTHOGRAPHIC, ORTHOGRAPHIC_OFF, KINDS };
 enum { REVERSE = 1, NEGATIVE = 2, LEFT = 4, FLIP = 8, CONVENTIONS = 16 };
 
 static uint32_t seed = 3;
-static float any(double low, double high) { return (float)core_between(&seed, low, high); }
+static float any(double low, double high) {
+    return (float)core_between(&seed, low, high);
+}
 
 /* Right-handed, y up, clip depth 0..1. [row][column] */
 static void reference(int kind, int reverse, double view[4][4], double p[4][4]) {
@@ -78,7 +81,8 @@ static lao_camera host_camera(int kind, int convention, double size) {
     columns((const double(*)[4])view, camera.view);
     columns((const double(*)[4])p, camera.projection);
     camera.flags = (convention & NEGATIVE ? 0u : LAO_CAMERA_ZERO_TO_ONE) |
-                   (convention & REVERSE ? LAO_CAMERA_REVERSE_DEPTH : 0u) | (convention & FLIP ? LAO_CAMERA_FLIP_Y : 0u);
+                   (convention & REVERSE ? LAO_CAMERA_REVERSE_DEPTH : 0u) |
+                   (convention & FLIP ? LAO_CAMERA_FLIP_Y : 0u);
     return camera;
 }
 
@@ -95,10 +99,14 @@ static void every_convention_gives_the_same_camera(void **state) {
                 columns((const double(*)[4])p, wanted);
                 assert_int_equal(lao_camera_canonical(&camera, &got), 0);
                 for (int i = 0; i < 16; i++) {
-                    assert_true(fabsf(got.view[i] - wanted_view[i]) <= 1e-6f * fabsf(wanted_view[i]));
-                    assert_true(fabsf(got.projection[i] - wanted[i]) <= 2e-6f * fabsf(wanted[i]) + 2e-7f);
+                    assert_true(fabsf(got.view[i] - wanted_view[i]) <=
+                                1e-6f * fabsf(wanted_view[i]));
+                    assert_true(fabsf(got.projection[i] - wanted[i]) <=
+                                2e-6f * fabsf(wanted[i]) + 2e-7f);
                 }
-                assert_int_equal(got.flags, LAO_CAMERA_ZERO_TO_ONE | (convention & REVERSE ? LAO_CAMERA_REVERSE_DEPTH : 0u));
+                assert_int_equal(got.flags,
+                                 LAO_CAMERA_ZERO_TO_ONE |
+                                     (convention & REVERSE ? LAO_CAMERA_REVERSE_DEPTH : 0u));
                 camera = got; /* canonical already: stays as it is */
                 assert_int_equal(lao_camera_canonical(&got, &camera), 0);
                 assert_memory_equal(&camera, &got, sizeof got);
@@ -107,7 +115,8 @@ static void every_convention_gives_the_same_camera(void **state) {
     }
 }
 
-/* A point's window depth, as the host's own depth buffer would hold it, and its pixel give the point back. */
+/* A point's window depth, as the host's own depth buffer would hold it, and its pixel give the
+ * point back. */
 static void depth_gives_the_position_back(void **state) {
     core_host host;
     lao_desc desc;
@@ -134,7 +143,8 @@ static void depth_gives_the_position_back(void **state) {
             for (int i = 0; i < 200; i++) {
                 const float world[3] = {any(-30, 30), any(-30, 30), any(-30, 30)};
                 double eye[4], clip[4], d, px, py, z;
-                lao_v3 canonical = lao_transform(u->view, lao_v3_make(world[0], world[1], world[2]));
+                lao_v3 canonical =
+                    lao_transform(u->view, lao_v3_make(world[0], world[1], world[2]));
                 lao_v2 slope;
                 for (int r = 0; r < 4; r++) {
                     eye[r] = (double)frame.camera.view[12 + r];
@@ -152,9 +162,11 @@ static void depth_gives_the_position_back(void **state) {
                 d = clip[2] / clip[3];
                 d = convention & NEGATIVE ? 0.5 * d + 0.5 : d;
                 px = (0.5 * clip[0] / clip[3] + 0.5) * (double)u->viewport.x;
-                py = ((convention & FLIP ? -0.5 : 0.5) * clip[1] / clip[3] + 0.5) * (double)u->viewport.y;
+                py = ((convention & FLIP ? -0.5 : 0.5) * clip[1] / clip[3] + 0.5) *
+                     (double)u->viewport.y;
                 slope = lao_pixel_slope(u->ray, (float)px, (float)py);
-                z = ((double)u->unproject.x + (double)u->unproject.y * d) / ((double)u->unproject.z + (double)u->unproject.w * d);
+                z = ((double)u->unproject.x + (double)u->unproject.y * d) /
+                    ((double)u->unproject.z + (double)u->unproject.w * d);
                 assert_true(fabs(z + (double)canonical.z) < 2e-3);
                 z = u->depth.w > 0.5f ? 1 : z;
                 assert_true(fabs((double)slope.x * z - (double)canonical.x) < 2e-3);
@@ -176,7 +188,8 @@ static void assert_refused(const lao_camera *camera) {
 
 static void what_cannot_be_drawn_is_refused(void **state) {
     static const float bad[] = {NAN, INFINITY, -INFINITY};
-    static const int shear_of_both[] = {1, 2, 3, 4, 6, 7}; /* column-major: what is 0 in any of our projections */
+    static const int shear_of_both[] = {
+        1, 2, 3, 4, 6, 7}; /* column-major: what is 0 in any of our projections */
     lao_camera camera;
     (void)state;
     for (int kind = 0; kind < KINDS; kind++) {

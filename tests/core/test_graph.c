@@ -1,7 +1,8 @@
-/* The frame graph is data that proves itself: lao_graph_check passes for the line module and finds each planted fault, and
-   every plan made from tables, shipped or random, reads only what was written, shares no memory between what lives at the
-   same time, and names every change of access. The plans in tests/core/plans are the shipped ones as text; write them anew
-   with LINEAO_WRITE_PLANS=1. */
+/* The frame graph is data that proves itself: lao_graph_check passes for the line module and finds
+   each planted fault, and every plan made from tables, shipped or random, reads only what was
+   written, shares no memory between what lives at the same time, and names every change of access.
+   The plans in tests/core/plans are the shipped ones as text; write them anew with
+   LINEAO_WRITE_PLANS=1. */
 #include "core_host.h"
 
 #include <setjmp.h>
@@ -11,7 +12,8 @@
 #include <string.h>
 #include <cmocka.h>
 
-/* -------------------------------------------------------------------------------------------------- a small module */
+/* --------------------------------------------------------------------------------------------------
+ * a small module */
 
 enum { IMAGES = 5, PASSES = 5, SETTINGS = 3, PRESETS = 1 };
 
@@ -25,7 +27,8 @@ typedef struct tables {
     lao_module module;
 } tables;
 
-static lao_reference at(const char *image, lao_level level, uint32_t index, lao_phase phase, lao_load load) {
+static lao_reference at(const char *image, lao_level level, uint32_t index, lao_phase phase,
+                        lao_load load) {
     lao_reference r;
     memset(&r, 0, sizeof r);
     r.image = image;
@@ -35,9 +38,12 @@ static lao_reference at(const char *image, lao_level level, uint32_t index, lao_
     r.load = load;
     return r;
 }
-static lao_reference simply(const char *image) { return at(image, LAO_LEVEL_SAME, 0, LAO_PHASE_THIS, LAO_LOAD_DISCARD); }
+static lao_reference simply(const char *image) {
+    return at(image, LAO_LEVEL_SAME, 0, LAO_PHASE_THIS, LAO_LOAD_DISCARD);
+}
 
-static lao_image_row image_row(const char *name, lao_format format, lao_size size, const char *levels, uint32_t flags) {
+static lao_image_row image_row(const char *name, lao_format format, lao_size size,
+                               const char *levels, uint32_t flags) {
     lao_image_row row;
     memset(&row, 0, sizeof row);
     row.name = name;
@@ -81,9 +87,11 @@ static void tables_fill(tables *t) {
     t->images[4] = image_row("c", LAO_FORMAT_RGBA8, LAO_SIZE_FULL, NULL, 0);
     t->passes[0] = pass_row("first", simply("a"), simply("in"));
     t->passes[1] = pass_row("second", simply("b"), simply("a"));
-    t->passes[2] = pass_row("up", simply("b"), at("b", LAO_LEVEL_FINER, 0, LAO_PHASE_THIS, LAO_LOAD_DISCARD));
+    t->passes[2] =
+        pass_row("up", simply("b"), at("b", LAO_LEVEL_FINER, 0, LAO_PHASE_THIS, LAO_LOAD_DISCARD));
     t->passes[2].repeat = LAO_REPEAT_LEVELS_UP;
-    t->passes[3] = pass_row("third", simply("c"), at("b", LAO_LEVEL_INDEX, 9, LAO_PHASE_THIS, LAO_LOAD_DISCARD));
+    t->passes[3] = pass_row("third", simply("c"),
+                            at("b", LAO_LEVEL_INDEX, 9, LAO_PHASE_THIS, LAO_LOAD_DISCARD));
     t->passes[4] = pass_row("last", simply("kept"), simply("c"));
     t->passes[4].reads[1] = at("kept", LAO_LEVEL_SAME, 0, LAO_PHASE_PREVIOUS, LAO_LOAD_DISCARD);
     t->settings[0] = setting_row("levels", 3);
@@ -106,25 +114,50 @@ static void tables_fill(tables *t) {
     t->module.preset_count = PRESETS;
 }
 
-/* ----------------------------------------------------------------------------------------------------------- faults */
+/* -----------------------------------------------------------------------------------------------------------
+ * faults */
 
 typedef struct fault {
     void (*plant)(tables *t);
     const char *text;
 } fault;
 
-static void two_images(tables *t) { t->images[4].name = "a"; }
-static void two_passes(tables *t) { t->passes[3].name = "first"; }
-static void two_settings(tables *t) { t->settings[1].name = "levels"; }
-static void levels_setting(tables *t) { t->images[2].levels = "no_such"; }
-static void preset_setting(tables *t) { t->presets[0].setting = "no_such"; }
-static void writes_nothing(tables *t) { t->passes[0].writes[0].image = NULL; }
-static void writes_unknown(tables *t) { t->passes[0].writes[0].image = "no_such"; }
-static void reads_unknown(tables *t) { t->passes[1].reads[1] = simply("no_such"); }
-static void reads_unknown_buffer(tables *t) { t->passes[1].reads[1] = simply("#no_such"); }
-static void read_before_write(tables *t) { t->passes[0].reads[0].image = "c"; }
-static void read_before_write_up(tables *t) { t->passes[1].writes[0].image = "c"; }
-static void reads_what_it_writes(tables *t) { t->passes[3].reads[1] = simply("c"); }
+static void two_images(tables *t) {
+    t->images[4].name = "a";
+}
+static void two_passes(tables *t) {
+    t->passes[3].name = "first";
+}
+static void two_settings(tables *t) {
+    t->settings[1].name = "levels";
+}
+static void levels_setting(tables *t) {
+    t->images[2].levels = "no_such";
+}
+static void preset_setting(tables *t) {
+    t->presets[0].setting = "no_such";
+}
+static void writes_nothing(tables *t) {
+    t->passes[0].writes[0].image = NULL;
+}
+static void writes_unknown(tables *t) {
+    t->passes[0].writes[0].image = "no_such";
+}
+static void reads_unknown(tables *t) {
+    t->passes[1].reads[1] = simply("no_such");
+}
+static void reads_unknown_buffer(tables *t) {
+    t->passes[1].reads[1] = simply("#no_such");
+}
+static void read_before_write(tables *t) {
+    t->passes[0].reads[0].image = "c";
+}
+static void read_before_write_up(tables *t) {
+    t->passes[1].writes[0].image = "c";
+}
+static void reads_what_it_writes(tables *t) {
+    t->passes[3].reads[1] = simply("c");
+}
 static void reads_what_it_writes_by_index(tables *t) {
     t->passes[4].reads[1] = simply("kept");
     t->passes[4].reads[1].level = LAO_LEVEL_INDEX;
@@ -137,18 +170,40 @@ static void image_unused(tables *t) {
     t->passes[3].writes[0].image = "kept";
     t->passes[4].reads[0] = at("b", LAO_LEVEL_INDEX, 0, LAO_PHASE_THIS, LAO_LOAD_DISCARD);
 }
-static void shader_missing(tables *t) { t->passes[2].shader = "no_such"; }
-static void setting_unknown(tables *t) { t->passes[2].when[0].name = "no_such", t->passes[2].when[0].compare = '='; }
-static void setting_unknown_last(tables *t) { t->passes[2].when[2].name = "no_such", t->passes[2].when[2].compare = '='; }
-static void import_unknown(tables *t) { t->passes[0].when[0].name = "@no_such", t->passes[0].when[0].compare = '>'; }
-static void comparison_unknown(tables *t) { t->passes[2].when[0].name = "levels", t->passes[2].when[0].compare = '~'; }
-static void comparison_missing(tables *t) { t->passes[2].when[0].name = "levels"; }
-static void image_setting_unknown(tables *t) { t->images[1].when.name = "no_such", t->images[1].when.compare = '='; }
-static void repeat_unknown(tables *t) { t->passes[3].repeat = LAO_REPEAT_COUNT, t->passes[3].repeat_setting = "no_such"; }
-static void repeat_missing(tables *t) { t->passes[3].repeat = LAO_REPEAT_COUNT; }
-static void pass_useless(tables *t) { t->passes[4].reads[0] = at("b", LAO_LEVEL_INDEX, 0, LAO_PHASE_THIS, LAO_LOAD_DISCARD); }
+static void shader_missing(tables *t) {
+    t->passes[2].shader = "no_such";
+}
+static void setting_unknown(tables *t) {
+    t->passes[2].when[0].name = "no_such", t->passes[2].when[0].compare = '=';
+}
+static void setting_unknown_last(tables *t) {
+    t->passes[2].when[2].name = "no_such", t->passes[2].when[2].compare = '=';
+}
+static void import_unknown(tables *t) {
+    t->passes[0].when[0].name = "@no_such", t->passes[0].when[0].compare = '>';
+}
+static void comparison_unknown(tables *t) {
+    t->passes[2].when[0].name = "levels", t->passes[2].when[0].compare = '~';
+}
+static void comparison_missing(tables *t) {
+    t->passes[2].when[0].name = "levels";
+}
+static void image_setting_unknown(tables *t) {
+    t->images[1].when.name = "no_such", t->images[1].when.compare = '=';
+}
+static void repeat_unknown(tables *t) {
+    t->passes[3].repeat = LAO_REPEAT_COUNT, t->passes[3].repeat_setting = "no_such";
+}
+static void repeat_missing(tables *t) {
+    t->passes[3].repeat = LAO_REPEAT_COUNT;
+}
+static void pass_useless(tables *t) {
+    t->passes[4].reads[0] = at("b", LAO_LEVEL_INDEX, 0, LAO_PHASE_THIS, LAO_LOAD_DISCARD);
+}
 
-static void previous_not_kept(tables *t) { t->passes[1].reads[1] = at("a", LAO_LEVEL_SAME, 0, LAO_PHASE_PREVIOUS, LAO_LOAD_DISCARD); }
+static void previous_not_kept(tables *t) {
+    t->passes[1].reads[1] = at("a", LAO_LEVEL_SAME, 0, LAO_PHASE_PREVIOUS, LAO_LOAD_DISCARD);
+}
 static void previous_not_written(tables *t) {
     t->images[3].flags = 0;
     t->images[4].flags = LAO_IMAGE_HISTORY;
@@ -157,8 +212,12 @@ static void previous_not_written(tables *t) {
     t->passes[4].reads[0].image = "kept";
     t->passes[4].reads[1].image = "c";
 }
-static void preset_unknown(tables *t) { t->presets[0].preset = "no_such"; }
-static void presets_without_setting(tables *t) { t->settings[2].name = "look"; }
+static void preset_unknown(tables *t) {
+    t->presets[0].preset = "no_such";
+}
+static void presets_without_setting(tables *t) {
+    t->settings[2].name = "look";
+}
 static void too_many_settings(tables *t) {
     static lao_setting_row rows[65];
     static char names[65][8];
@@ -228,7 +287,8 @@ static void planted_faults_are_found(void **state) {
         if (i > 0 && (result == 0 || strcmp(text, faults[i - 1].text) != 0)) {
             fail_msg("wanted: %s\n  got: %s", faults[i - 1].text, result ? text : "(nothing)");
         }
-        assert_int_equal(lao_graph_check(&graph, t.shaders, 2, NULL, 0), result); /* the text is optional */
+        assert_int_equal(lao_graph_check(&graph, t.shaders, 2, NULL, 0),
+                         result); /* the text is optional */
         lao_graph_free(NULL, &graph);
     }
 }
@@ -272,7 +332,8 @@ static void the_line_module_is_sound(void **state) {
     }
 }
 
-/* ------------------------------------------------------------------------------------------------------------ plans */
+/* ------------------------------------------------------------------------------------------------------------
+ * plans */
 
 enum { TEXT = 65536, SETS = 3 };
 
@@ -330,10 +391,10 @@ static void planning_end(planning *p) {
     lao_graph_free(NULL, &p->graph);
 }
 
-#define BROKEN(...)                                                                                                    \
-    do {                                                                                                               \
-        fprintf(stderr, "%s", p->text);                                                                                \
-        fail_msg(__VA_ARGS__);                                                                                         \
+#define BROKEN(...)                                                                                \
+    do {                                                                                           \
+        fprintf(stderr, "%s", p->text);                                                            \
+        fail_msg(__VA_ARGS__);                                                                     \
     } while (0)
 
 static const char *name_of(const planning *p, uint32_t instance) {
@@ -368,7 +429,8 @@ static void check_memory(planning *p) {
         uint32_t first, last, w, h;
         life(plan, i, &first, &last);
         if (first != a->first_step || last != a->last_step) {
-            BROKEN("%s lives %u..%u, not %u..%u", name_of(p, i), first, last, a->first_step, a->last_step);
+            BROKEN("%s lives %u..%u, not %u..%u", name_of(p, i), first, last, a->first_step,
+                   a->last_step);
         }
         w = row->size == LAO_SIZE_FIXED ? row->width : p->desc.width;
         h = row->size == LAO_SIZE_FIXED ? row->height : p->desc.height;
@@ -393,12 +455,15 @@ static void check_memory(planning *p) {
         for (uint32_t k = 0; k < i && a->import == LAO_NO_INDEX; k++) {
             const lao_plan_instance *b = &plan->instances[k];
             uint32_t b_first, b_last;
-            int history = ((p->graph.images[a->image]->flags | p->graph.images[b->image]->flags) & LAO_IMAGE_HISTORY) != 0;
+            int history = ((p->graph.images[a->image]->flags | p->graph.images[b->image]->flags) &
+                           LAO_IMAGE_HISTORY) != 0;
             life(plan, k, &b_first, &b_last);
             for (int parity = 0; parity < 2; parity++) {
                 if (b->slot[parity] == a->slot[parity] && b->import == LAO_NO_INDEX &&
-                    (history || !(b_last < first || last < b_first) || (p->desc.flags & LAO_VIEW_KEEP_IMAGES))) {
-                    BROKEN("%s.%u and %s.%u share memory while both live", name_of(p, i), a->level, name_of(p, k), b->level);
+                    (history || !(b_last < first || last < b_first) ||
+                     (p->desc.flags & LAO_VIEW_KEEP_IMAGES))) {
+                    BROKEN("%s.%u and %s.%u share memory while both live", name_of(p, i), a->level,
+                           name_of(p, k), b->level);
                 }
             }
         }
@@ -420,11 +485,14 @@ static void check_access(planning *p) {
         for (; b < end; b++) {
             const lao_plan_barrier *barrier = &plan->barriers[b];
             uint32_t slot = plan->instances[barrier->instance].slot[0];
-            lao_access *now = &state[slot != LAO_NO_INDEX ? slot : plan->slot_count + barrier->instance];
+            lao_access *now =
+                &state[slot != LAO_NO_INDEX ? slot : plan->slot_count + barrier->instance];
             if (barrier->before != *now) {
-                BROKEN("step %u: a barrier of %s comes from the wrong access", s, name_of(p, barrier->instance));
+                BROKEN("step %u: a barrier of %s comes from the wrong access", s,
+                       name_of(p, barrier->instance));
             }
-            if (!step && (barrier->after != LAO_ACCESS_NONE || plan->instances[barrier->instance].import == LAO_NO_INDEX)) {
+            if (!step && (barrier->after != LAO_ACCESS_NONE ||
+                          plan->instances[barrier->instance].import == LAO_NO_INDEX)) {
                 BROKEN("only imports are given back");
             }
             *now = barrier->after;
@@ -432,30 +500,38 @@ static void check_access(planning *p) {
         for (uint32_t i = 0; step && i < step->read_count; i++) {
             if (step->reads[i] < plan->instance_count) {
                 uint32_t slot = plan->instances[step->reads[i]].slot[0];
-                if (state[slot != LAO_NO_INDEX ? slot : plan->slot_count + step->reads[i]] != LAO_ACCESS_SAMPLE) {
+                if (state[slot != LAO_NO_INDEX ? slot : plan->slot_count + step->reads[i]] !=
+                    LAO_ACCESS_SAMPLE) {
                     BROKEN("step %u reads %s without a barrier", s, name_of(p, step->reads[i]));
                 }
                 assert_true(slot == LAO_NO_INDEX || plan->slots[slot].sampled);
             }
         }
         for (uint32_t i = 0; step && i <= step->color_count; i++) {
-            uint32_t instance = i < step->color_count ? step->colors[i].instance : step->depth.instance, slot, found = 0;
+            uint32_t instance =
+                         i < step->color_count ? step->colors[i].instance : step->depth.instance,
+                     slot, found = 0;
             if (instance == LAO_NO_INDEX) {
                 continue;
             }
             slot = plan->instances[instance].slot[0];
-            if (state[slot != LAO_NO_INDEX ? slot : plan->slot_count + instance] != (i < step->color_count ? LAO_ACCESS_COLOR : LAO_ACCESS_DEPTH)) {
+            if (state[slot != LAO_NO_INDEX ? slot : plan->slot_count + instance] !=
+                (i < step->color_count ? LAO_ACCESS_COLOR : LAO_ACCESS_DEPTH)) {
                 BROKEN("step %u writes %s without a barrier", s, name_of(p, instance));
             }
             /* also between two writers in a row */
-            for (uint32_t k = step->barrier_first; k < step->barrier_first + step->barrier_count; k++) {
-                found += plan->barriers[k].instance == instance && plan->barriers[k].after != LAO_ACCESS_SAMPLE;
+            for (uint32_t k = step->barrier_first; k < step->barrier_first + step->barrier_count;
+                 k++) {
+                found += plan->barriers[k].instance == instance &&
+                         plan->barriers[k].after != LAO_ACCESS_SAMPLE;
             }
             if (found != 1) {
-                BROKEN("step %u has %u barriers for its write of %s", s, found, name_of(p, instance));
+                BROKEN("step %u has %u barriers for its write of %s", s, found,
+                       name_of(p, instance));
             }
             assert_true(slot == LAO_NO_INDEX || plan->slots[slot].attached);
-            if (plan->instances[instance].width != step->width || plan->instances[instance].height != step->height) {
+            if (plan->instances[instance].width != step->width ||
+                plan->instances[instance].height != step->height) {
                 BROKEN("step %u writes images of two sizes", s);
             }
             for (uint32_t r = 0; r < step->read_count; r++) {
@@ -466,7 +542,8 @@ static void check_access(planning *p) {
         }
     }
     for (uint32_t i = 0; i < plan->instance_count; i++) {
-        if (plan->instances[i].import != LAO_NO_INDEX && state[plan->slot_count + i] != LAO_ACCESS_NONE) {
+        if (plan->instances[i].import != LAO_NO_INDEX &&
+            state[plan->slot_count + i] != LAO_ACCESS_NONE) {
             BROKEN("%s is not given back", name_of(p, i));
         }
     }
@@ -487,7 +564,8 @@ static void check_content(planning *p) {
             for (uint32_t i = 0; i < step->read_count; i++) {
                 const lao_plan_instance *a;
                 uint32_t slot, previous;
-                if (step->reads[i] >= plan->instance_count || plan->instances[step->reads[i]].import != LAO_NO_INDEX) {
+                if (step->reads[i] >= plan->instance_count ||
+                    plan->instances[step->reads[i]].import != LAO_NO_INDEX) {
                     continue;
                 }
                 a = &plan->instances[step->reads[i]];
@@ -496,24 +574,30 @@ static void check_content(planning *p) {
                 if (previous && frame == 0) {
                     continue; /* there is none yet */
                 }
-                if (!memory[slot].valid || memory[slot].image != a->image || memory[slot].level != a->level ||
-                    memory[slot].frame != frame - previous || memory[slot].phase != (previous ? 0 : a->phase)) {
-                    BROKEN("frame %u step %u reads %s.%u%s, which is not there", frame, s, name_of(p, step->reads[i]), a->level,
-                           a->phase ? "'" : "");
+                if (!memory[slot].valid || memory[slot].image != a->image ||
+                    memory[slot].level != a->level || memory[slot].frame != frame - previous ||
+                    memory[slot].phase != (previous ? 0 : a->phase)) {
+                    BROKEN("frame %u step %u reads %s.%u%s, which is not there", frame, s,
+                           name_of(p, step->reads[i]), a->level, a->phase ? "'" : "");
                 }
             }
             for (uint32_t i = 0; i <= step->color_count; i++) {
-                const lao_plan_write *write = i < step->color_count ? &step->colors[i] : &step->depth;
+                const lao_plan_write *write =
+                    i < step->color_count ? &step->colors[i] : &step->depth;
                 const lao_plan_instance *a;
                 uint32_t slot;
-                if (write->instance == LAO_NO_INDEX || plan->instances[write->instance].import != LAO_NO_INDEX) {
+                if (write->instance == LAO_NO_INDEX ||
+                    plan->instances[write->instance].import != LAO_NO_INDEX) {
                     continue;
                 }
                 a = &plan->instances[write->instance];
                 slot = a->slot[parity];
-                if (write->clear == 0 && (!memory[slot].valid || memory[slot].image != a->image || memory[slot].level != a->level ||
-                                          memory[slot].frame != frame || memory[slot].phase != a->phase)) {
-                    BROKEN("frame %u step %u keeps what %s.%u never had", frame, s, name_of(p, write->instance), a->level);
+                if (write->clear == 0 &&
+                    (!memory[slot].valid || memory[slot].image != a->image ||
+                     memory[slot].level != a->level || memory[slot].frame != frame ||
+                     memory[slot].phase != a->phase)) {
+                    BROKEN("frame %u step %u keeps what %s.%u never had", frame, s,
+                           name_of(p, write->instance), a->level);
                 }
                 memory[slot].valid = 1;
                 memory[slot].image = a->image;
@@ -588,7 +672,8 @@ static void shipped_plans_are_as_written(void **state) {
         assert_int_equal(p.plan.reverse_depth, writable);
         planning_end(&p);
     }
-    planning_begin(&p, lao_lines_module(), 1); /* lao_occlude: the host's G-buffer instead of lines */
+    planning_begin(&p, lao_lines_module(),
+                   1); /* lao_occlude: the host's G-buffer instead of lines */
     planning_import(&p, "color", 0);
     planning_import(&p, "tangent", 0);
     planning_import(&p, "depth", 0);
@@ -630,7 +715,9 @@ static void every_structure_of_the_line_module_is_sound(void **state) {
             for (uint32_t k = 0; k < module->setting_count; k++) {
                 const lao_setting_row *row = &module->settings[k];
                 if (row->structural && core_random(&seed) % 2) {
-                    p.values[s][k] = row->minimum + (float)(core_random(&seed) % (uint32_t)(row->maximum - row->minimum + 1));
+                    p.values[s][k] =
+                        row->minimum +
+                        (float)(core_random(&seed) % (uint32_t)(row->maximum - row->minimum + 1));
                 }
             }
         }
@@ -671,16 +758,20 @@ static void repeats_levels_and_phases(void **state) {
     images[1] = image_row("fill", LAO_FORMAT_RGBA16F, LAO_SIZE_FIXED, "*", 0);
     images[2] = image_row("sweep", LAO_FORMAT_RGBA16F, LAO_SIZE_FIXED, NULL, 0);
     images[3] = image_row("kept", LAO_FORMAT_RGBA16F, LAO_SIZE_FIXED, NULL, LAO_IMAGE_HISTORY);
-    passes[0] = pass_row("base", simply("pyramid"), at("kept", LAO_LEVEL_SAME, 0, LAO_PHASE_PREVIOUS, LAO_LOAD_DISCARD));
-    passes[1] = pass_row("pull", simply("pyramid"), at("pyramid", LAO_LEVEL_FINER, 0, LAO_PHASE_THIS, LAO_LOAD_DISCARD));
+    passes[0] = pass_row("base", simply("pyramid"),
+                         at("kept", LAO_LEVEL_SAME, 0, LAO_PHASE_PREVIOUS, LAO_LOAD_DISCARD));
+    passes[1] = pass_row("pull", simply("pyramid"),
+                         at("pyramid", LAO_LEVEL_FINER, 0, LAO_PHASE_THIS, LAO_LOAD_DISCARD));
     passes[1].repeat = LAO_REPEAT_LEVELS_UP;
     passes[2] = pass_row("top", at("fill", LAO_LEVEL_INDEX, 99, LAO_PHASE_THIS, LAO_LOAD_DISCARD),
                          at("pyramid", LAO_LEVEL_INDEX, 99, LAO_PHASE_THIS, LAO_LOAD_DISCARD));
-    passes[3] = pass_row("push", simply("fill"), at("fill", LAO_LEVEL_COARSER, 0, LAO_PHASE_THIS, LAO_LOAD_DISCARD));
+    passes[3] = pass_row("push", simply("fill"),
+                         at("fill", LAO_LEVEL_COARSER, 0, LAO_PHASE_THIS, LAO_LOAD_DISCARD));
     passes[3].repeat = LAO_REPEAT_LEVELS_DOWN;
     passes[3].reads[1] = simply("pyramid");
     passes[4] = pass_row("start", simply("sweep"), simply("fill"));
-    passes[5] = pass_row("turn", at("sweep", LAO_LEVEL_SAME, 0, LAO_PHASE_OTHER, LAO_LOAD_DISCARD), simply("sweep"));
+    passes[5] = pass_row("turn", at("sweep", LAO_LEVEL_SAME, 0, LAO_PHASE_OTHER, LAO_LOAD_DISCARD),
+                         simply("sweep"));
     passes[5].repeat = LAO_REPEAT_COUNT;
     passes[5].repeat_setting = "turns";
     {
@@ -731,7 +822,8 @@ static void repeats_levels_and_phases(void **state) {
     }
 }
 
-/* LAO_LOAD_KEEP clears each piece of memory the first time that the frame writes it, whatever else of the image is there. */
+/* LAO_LOAD_KEEP clears each piece of memory the first time that the frame writes it, whatever else
+ * of the image is there. */
 static void keep_clears_each_level_and_partner_once(void **state) {
     static planning p;
     tables t;
@@ -742,13 +834,17 @@ static void keep_clears_each_level_and_partner_once(void **state) {
     images[0] = image_row("sums", LAO_FORMAT_RGBA16F, LAO_SIZE_FIXED, "levels", 0);
     images[1] = image_row("sweep", LAO_FORMAT_RGBA16F, LAO_SIZE_FIXED, NULL, 0);
     images[2] = image_row("kept", LAO_FORMAT_RGBA16F, LAO_SIZE_FIXED, NULL, LAO_IMAGE_HISTORY);
-    passes[0] = pass_row("base", simply("sums"), at("kept", LAO_LEVEL_SAME, 0, LAO_PHASE_PREVIOUS, LAO_LOAD_DISCARD));
+    passes[0] = pass_row("base", simply("sums"),
+                         at("kept", LAO_LEVEL_SAME, 0, LAO_PHASE_PREVIOUS, LAO_LOAD_DISCARD));
     passes[0].writes[0].load = LAO_LOAD_KEEP;
-    passes[1] = pass_row("up", simply("sums"), at("sums", LAO_LEVEL_FINER, 0, LAO_PHASE_THIS, LAO_LOAD_DISCARD));
+    passes[1] = pass_row("up", simply("sums"),
+                         at("sums", LAO_LEVEL_FINER, 0, LAO_PHASE_THIS, LAO_LOAD_DISCARD));
     passes[1].repeat = LAO_REPEAT_LEVELS_UP;
     passes[1].writes[0].load = LAO_LOAD_KEEP;
-    passes[2] = pass_row("start", simply("sweep"), at("sums", LAO_LEVEL_INDEX, 1, LAO_PHASE_THIS, LAO_LOAD_DISCARD));
-    passes[3] = pass_row("turn", at("sweep", LAO_LEVEL_SAME, 0, LAO_PHASE_OTHER, LAO_LOAD_KEEP), simply("sweep"));
+    passes[2] = pass_row("start", simply("sweep"),
+                         at("sums", LAO_LEVEL_INDEX, 1, LAO_PHASE_THIS, LAO_LOAD_DISCARD));
+    passes[3] = pass_row("turn", at("sweep", LAO_LEVEL_SAME, 0, LAO_PHASE_OTHER, LAO_LOAD_KEEP),
+                         simply("sweep"));
     passes[3].repeat = LAO_REPEAT_COUNT;
     passes[3].repeat_setting = "turns";
     passes[4] = pass_row("keep", simply("kept"), simply("sweep"));
@@ -763,7 +859,8 @@ static void keep_clears_each_level_and_partner_once(void **state) {
     planning_end(&p);
 }
 
-/* ---------------------------------------------------------------------------------------------------- random graphs */
+/* ----------------------------------------------------------------------------------------------------
+ * random graphs */
 
 enum { RANDOM_IMAGES = 8, RANDOM_PASSES = 20 };
 
@@ -784,9 +881,12 @@ static void random_reads(random_graph *g, lao_pass_row *row, uint32_t *seed, uin
             written |= row->writes[w].image == g->images[x].name;
         }
         if ((g->images[x].flags & LAO_IMAGE_HISTORY) && core_random(seed) % 2) {
-            row->reads[r++] = at(g->images[x].name, LAO_LEVEL_INDEX, 0, LAO_PHASE_PREVIOUS, LAO_LOAD_DISCARD);
+            row->reads[r++] =
+                at(g->images[x].name, LAO_LEVEL_INDEX, 0, LAO_PHASE_PREVIOUS, LAO_LOAD_DISCARD);
         } else if (g->built[x] && !written) {
-            row->reads[r++] = at(g->images[x].name, LAO_LEVEL_INDEX, g->built[x] == 2 ? core_random(seed) % 9 : 0, LAO_PHASE_THIS, LAO_LOAD_DISCARD);
+            row->reads[r++] =
+                at(g->images[x].name, LAO_LEVEL_INDEX, g->built[x] == 2 ? core_random(seed) % 9 : 0,
+                   LAO_PHASE_THIS, LAO_LOAD_DISCARD);
         }
     }
 }
@@ -799,26 +899,31 @@ static lao_pass_row *random_pass(random_graph *g, uint32_t *seed, uint32_t x) {
     row->shader = "s";
     row->scope = core_random(seed) % 2 ? LAO_SCOPE_PER_SET : LAO_SCOPE_FRAME;
     row->depth = core_random(seed) % 2 ? LAO_DEPTH_NEARER : LAO_DEPTH_NONE;
-    row->writes[0] = at(g->images[x].name, LAO_LEVEL_SAME, 0, LAO_PHASE_THIS, (lao_load)(core_random(seed) % 3));
+    row->writes[0] =
+        at(g->images[x].name, LAO_LEVEL_SAME, 0, LAO_PHASE_THIS, (lao_load)(core_random(seed) % 3));
     return row;
 }
 
 static void random_fill(random_graph *g, uint32_t *seed) {
-    static const lao_format formats[] = {LAO_FORMAT_RGBA8, LAO_FORMAT_RGBA8, LAO_FORMAT_RGBA16F, LAO_FORMAT_D32F};
+    static const lao_format formats[] = {LAO_FORMAT_RGBA8, LAO_FORMAT_RGBA8, LAO_FORMAT_RGBA16F,
+                                         LAO_FORMAT_D32F};
     static const char *const levels[] = {NULL, NULL, NULL, "*", "levels"};
     lao_pass_row *row;
     memset(g, 0, sizeof *g);
     g->image_count = 3 + core_random(seed) % (RANDOM_IMAGES - 3);
     for (uint32_t i = 0; i < g->image_count; i++) {
         snprintf(g->names[i], 8, "i%u", i);
-        g->images[i] = image_row(g->names[i], formats[core_random(seed) % 4], (lao_size)(core_random(seed) % 3), levels[core_random(seed) % 5], 0);
+        g->images[i] =
+            image_row(g->names[i], formats[core_random(seed) % 4],
+                      (lao_size)(core_random(seed) % 3), levels[core_random(seed) % 5], 0);
         if (!g->images[i].levels && core_random(seed) % 4 == 0) {
             g->images[i].flags = LAO_IMAGE_HISTORY;
         }
     }
     while (g->pass_count < RANDOM_PASSES - 2) {
         uint32_t x = core_random(seed) % g->image_count, y = core_random(seed) % g->image_count;
-        if (g->built[x] == 1 && !g->images[x].levels && !g->images[x].flags && core_random(seed) % 2) {
+        if (g->built[x] == 1 && !g->images[x].levels && !g->images[x].flags &&
+            core_random(seed) % 2) {
             row = random_pass(g, seed, x); /* ping-pong */
             row->writes[0].phase = LAO_PHASE_OTHER;
             row->repeat = core_random(seed) % 2 ? LAO_REPEAT_COUNT : LAO_REPEAT_NONE;
@@ -828,8 +933,10 @@ static void random_fill(random_graph *g, uint32_t *seed) {
             continue;
         }
         row = random_pass(g, seed, x);
-        if (y != x && g->images[y].size == g->images[x].size && (g->images[y].format != LAO_FORMAT_D32F || g->images[x].format != LAO_FORMAT_D32F)) {
-            row->writes[1] = at(g->images[y].name, LAO_LEVEL_SAME, 0, LAO_PHASE_THIS, (lao_load)(core_random(seed) % 3));
+        if (y != x && g->images[y].size == g->images[x].size &&
+            (g->images[y].format != LAO_FORMAT_D32F || g->images[x].format != LAO_FORMAT_D32F)) {
+            row->writes[1] = at(g->images[y].name, LAO_LEVEL_SAME, 0, LAO_PHASE_THIS,
+                                (lao_load)(core_random(seed) % 3));
         }
         random_reads(g, row, seed, 0);
         g->built[x] = g->built[x] ? g->built[x] : 1;
@@ -839,12 +946,14 @@ static void random_fill(random_graph *g, uint32_t *seed) {
         if (g->images[x].levels) {
             row = random_pass(g, seed, x);
             row->repeat = LAO_REPEAT_LEVELS_UP;
-            row->reads[0] = at(g->images[x].name, LAO_LEVEL_FINER, 0, LAO_PHASE_THIS, LAO_LOAD_DISCARD);
+            row->reads[0] =
+                at(g->images[x].name, LAO_LEVEL_FINER, 0, LAO_PHASE_THIS, LAO_LOAD_DISCARD);
             random_reads(g, row, seed, 1);
             g->built[x] = 2;
         }
     }
-    g->images[g->image_count] = image_row("final", LAO_FORMAT_R32F, LAO_SIZE_VIEW, NULL, LAO_IMAGE_HISTORY);
+    g->images[g->image_count] =
+        image_row("final", LAO_FORMAT_R32F, LAO_SIZE_VIEW, NULL, LAO_IMAGE_HISTORY);
     row = &g->passes[g->pass_count++];
     memset(row, 0, sizeof *row);
     row->name = "end";
@@ -854,7 +963,8 @@ static void random_fill(random_graph *g, uint32_t *seed) {
         int read = 0; /* by a pass that comes after a writer of it */
         for (uint32_t k = 0; k + 1 < g->pass_count; k++) {
             for (uint32_t m = 0; m < LAO_MAX_READS && g->passes[k].reads[m].image; m++) {
-                read |= g->passes[k].reads[m].image == g->images[i].name && g->passes[k].reads[m].level == LAO_LEVEL_INDEX;
+                read |= g->passes[k].reads[m].image == g->images[i].name &&
+                        g->passes[k].reads[m].level == LAO_LEVEL_INDEX;
             }
             for (uint32_t m = 0; m < LAO_MAX_WRITES && g->passes[k].writes[m].image; m++) {
                 read &= g->passes[k].writes[m].image != g->images[i].name;
@@ -909,7 +1019,8 @@ static void random_graphs_plan_soundly(void **state) {
     assert_true(shared > good / 10); /* memory is really shared, or the proof proves nothing */
 }
 
-/* ---------------------------------------------------------------------------------------------------- small print */
+/* ----------------------------------------------------------------------------------------------------
+ * small print */
 
 static void conditions_and_constants(void **state) {
     static planning p;
@@ -918,7 +1029,8 @@ static void conditions_and_constants(void **state) {
         char compare;
         float value;
         int holds[3]; /* for levels = 2, 3, 4 */
-    } cases[] = {{'=', 3, {0, 1, 0}}, {'!', 3, {1, 0, 1}}, {'<', 3, {1, 0, 0}}, {'>', 3, {0, 0, 1}}};
+    } cases[] = {
+        {'=', 3, {0, 1, 0}}, {'!', 3, {1, 0, 1}}, {'<', 3, {1, 0, 0}}, {'>', 3, {0, 0, 1}}};
     static const char *const names[] = {"turns", "levels"};
     lao_shader shader;
     const lao_shader *shaders[1] = {&shader};
@@ -1019,7 +1131,8 @@ static void memory_runs_out_anywhere(void **state) {
                 failed++;
                 assert_int_equal(result, LAO_ERROR_OUT_OF_MEMORY);
                 assert_int_equal(p.plan.step_count, 0);
-                assert_int_equal(lao_plan_make(&graph, &p.desc, &allocator, &p.plan), LAO_OK); /* goes on */
+                assert_int_equal(lao_plan_make(&graph, &p.desc, &allocator, &p.plan),
+                                 LAO_OK); /* goes on */
             }
             check_plan(&p);
             lao_plan_free(&allocator, &p.plan);
@@ -1045,9 +1158,11 @@ static void the_graph_prints_itself(void **state) {
     assert_int_equal(strncmp(text, "digraph lineao {", 16), 0);
     for (uint32_t i = 0; i < module->pass_count; i++) {
         char wanted[128];
-        snprintf(wanted, sizeof wanted, "\"pass %s\" -> \"%s\";", module->passes[i].name, module->passes[i].writes[0].image);
+        snprintf(wanted, sizeof wanted, "\"pass %s\" -> \"%s\";", module->passes[i].name,
+                 module->passes[i].writes[0].image);
         assert_non_null(strstr(text, wanted));
-        snprintf(wanted, sizeof wanted, "\"%s\" -> \"pass %s\";", module->passes[i].reads[0].image, module->passes[i].name);
+        snprintf(wanted, sizeof wanted, "\"%s\" -> \"pass %s\";", module->passes[i].reads[0].image,
+                 module->passes[i].name);
         assert_non_null(strstr(text, wanted));
     }
     assert_non_null(strstr(text, "\"host_depth\" [shape=ellipse, style=dashed]"));

@@ -1,5 +1,6 @@
-/* Ribbons have neither gaps nor notches: neighbouring quads share their corners for turns up to 90 degrees, sharper turns
-   cover the wedge between them, no segment is thinner than its width, and closed lines have no seam. */
+/* Ribbons have neither gaps nor notches: neighbouring quads share their corners for turns up to 90
+   degrees, sharper turns cover the wedge between them, no segment is thinner than its width, and
+   closed lines have no seam. */
 #include "core_host.h"
 
 #include <setjmp.h>
@@ -11,7 +12,9 @@
 #define PI 3.14159265358979323846
 
 static uint32_t seed = 7;
-static float any(double low, double high) { return (float)core_between(&seed, low, high); }
+static float any(double low, double high) {
+    return (float)core_between(&seed, low, high);
+}
 
 /* The four corners of a segment as shaders/lines.glsl makes them, seen along `e`. */
 typedef struct quad {
@@ -23,9 +26,11 @@ static quad quad_of(lao_v3 e, lao_v3 before, lao_v3 p1, lao_v3 p2, lao_v3 after,
     for (int at_end = 0; at_end < 2; at_end++) {
         lao_v3 p = at_end ? p2 : p1;
         lao_v3 other = at_end ? lao_v3_sub(after, p2) : lao_v3_sub(p1, before);
-        lao_line_end end = lao_line_join(e, lao_v3_sub(p2, p1), other, half_width, at_end ? 1.0f : -1.0f);
+        lao_line_end end =
+            lao_line_join(e, lao_v3_sub(p2, p1), other, half_width, at_end ? 1.0f : -1.0f);
         for (int side = 0; side < 2; side++) {
-            q.corner[2 * at_end + side] = lao_v3_add(lao_v3_along(p, end.across, side ? 1.0f : -1.0f), end.along);
+            q.corner[2 * at_end + side] =
+                lao_v3_add(lao_v3_along(p, end.across, side ? 1.0f : -1.0f), end.along);
         }
     }
     return q;
@@ -57,7 +62,8 @@ static void corners_are_shared_up_to_90_degrees(void **state) {
     (void)state;
     for (int i = 0; i < 20000; i++) {
         /* any view, any two segments much longer than wide, any turn as seen */
-        lao_v3 e = lao_v3_make(any(-1, 1), any(-1, 1), any(-2, -1)), p[4], unit = lao_v3_unit(e, away);
+        lao_v3 e = lao_v3_make(any(-1, 1), any(-1, 1), any(-2, -1)), p[4],
+               unit = lao_v3_unit(e, away);
         float half_width = any(0.01, 0.5);
         lao_v3 d1, d2, c1, c2;
         quad a, b;
@@ -70,7 +76,8 @@ static void corners_are_shared_up_to_90_degrees(void **state) {
             d2 = lao_v3_unit(lao_v3_sub(p[2], p[1]), e);
             c1 = lao_v3_cross(unit, d1);
             c2 = lao_v3_cross(unit, d2);
-        } while (lao_v3_dot(c1, c1) < 0.01f || lao_v3_dot(c2, c2) < 0.01f || lao_v3_dot(lao_v3_sub(p[1], p[0]), lao_v3_sub(p[1], p[0])) < 100 ||
+        } while (lao_v3_dot(c1, c1) < 0.01f || lao_v3_dot(c2, c2) < 0.01f ||
+                 lao_v3_dot(lao_v3_sub(p[1], p[0]), lao_v3_sub(p[1], p[0])) < 100 ||
                  lao_v3_dot(lao_v3_sub(p[2], p[1]), lao_v3_sub(p[2], p[1])) < 100);
         turn = (double)lao_v3_dot(lao_v3_unit(c1, e), lao_v3_unit(c2, e));
         a = quad_of(e, p[0], p[0], p[1], p[2], half_width);
@@ -89,27 +96,32 @@ static void corners_are_shared_up_to_90_degrees(void **state) {
     }
 }
 
-/* What butt ends would leave open: the part of the disc around the joint that lies beyond both segments. Also the disc
-   itself where the segments are long enough to reach all of it. */
+/* What butt ends would leave open: the part of the disc around the joint that lies beyond both
+   segments. Also the disc itself where the segments are long enough to reach all of it. */
 static void joints_have_no_gap(void **state) {
     (void)state;
     for (int degrees = -180; degrees <= 180; degrees++) {
         for (int trial = 0; trial < 12; trial++) {
             double angle = degrees * PI / 180, half_width = 1;
-            double long1 = trial < 4 ? 5 : (double)any(0.02, 3), long2 = trial < 4 ? 5 : (double)any(0.02, 3);
+            double long1 = trial < 4 ? 5 : (double)any(0.02, 3),
+                   long2 = trial < 4 ? 5 : (double)any(0.02, 3);
             double d1x = 1, d1y = 0, d2x = cos(angle), d2y = sin(angle);
             lao_v3 p0 = lao_v3_make((float)-long1, 0, trial % 2 ? any(-3, 3) : 0), p1 = {0, 0, 0};
-            lao_v3 p2 = lao_v3_make((float)(long2 * d2x), (float)(long2 * d2y), trial % 2 ? any(-3, 3) : 0);
-            quad a = quad_of(away, p0, p0, p1, p2, (float)half_width), b = quad_of(away, p0, p1, p2, p2, (float)half_width);
+            lao_v3 p2 =
+                lao_v3_make((float)(long2 * d2x), (float)(long2 * d2y), trial % 2 ? any(-3, 3) : 0);
+            quad a = quad_of(away, p0, p0, p1, p2, (float)half_width),
+                 b = quad_of(away, p0, p1, p2, p2, (float)half_width);
             for (int i = 0; i < 60; i++) {
-                double t = (double)any(0, 2 * PI), r = half_width * 0.999 * sqrt((double)any(0, 1)), x = r * cos(t), y = r * sin(t);
+                double t = (double)any(0, 2 * PI), r = half_width * 0.999 * sqrt((double)any(0, 1)),
+                       x = r * cos(t), y = r * sin(t);
                 int beyond = x * d1x + y * d1y >= 0 && x * d2x + y * d2y <= 0;
                 if (abs(degrees) == 180 && trial >= 4) {
                     continue;
                 }
                 if (beyond || (long1 >= 1.5 && long2 >= 1.5)) {
                     if (!quad_covers(&a, x, y) && !quad_covers(&b, x, y)) {
-                        fail_msg("turn of %d degrees, lengths %g %g: (%g, %g) is open", degrees, long1, long2, x, y);
+                        fail_msg("turn of %d degrees, lengths %g %g: (%g, %g) is open", degrees,
+                                 long1, long2, x, y);
                     }
                 }
             }
@@ -121,7 +133,8 @@ static void no_segment_is_thinner_than_its_width(void **state) {
     (void)state;
     for (int i = 0; i < 40000; i++) {
         lao_v3 e = lao_v3_unit(lao_v3_make(any(-1, 1), any(-1, 1), any(-2, -1)), away);
-        lao_v3 own = lao_v3_make(any(-1, 1), any(-1, 1), any(-1, 1)), other = lao_v3_make(any(-1, 1), any(-1, 1), any(-1, 1));
+        lao_v3 own = lao_v3_make(any(-1, 1), any(-1, 1), any(-1, 1)),
+               other = lao_v3_make(any(-1, 1), any(-1, 1), any(-1, 1));
         lao_v3 o = lao_v3_cross(e, lao_v3_unit(own, e));
         float half_width = any(0.01, 2);
         lao_line_end end;
@@ -136,12 +149,15 @@ static void no_segment_is_thinner_than_its_width(void **state) {
             fail_msg("half width %g, not %g", on, (double)half_width);
         }
         assert_true(fabs((double)lao_v3_dot(end.along, o)) < 1e-5 * (double)half_width);
-        assert_true(fabs((double)lao_v3_dot(end.across, e)) < 1e-5 * (double)half_width); /* view-aligned */
+        assert_true(fabs((double)lao_v3_dot(end.across, e)) <
+                    1e-5 * (double)half_width); /* view-aligned */
         assert_true(fabs((double)lao_v3_dot(end.normal, o) - 1) < 1e-5);
         assert_true(fabs((double)lao_v3_dot(end.tangent, end.tangent) - 1) < 1e-5);
         /* no corner is far from the joint: the mitre's limit */
-        assert_true((double)lao_v3_dot(end.across, end.across) < 2.01 * (double)half_width * (double)half_width);
-        assert_true((double)lao_v3_dot(end.along, end.along) < 1.01 * (double)half_width * (double)half_width);
+        assert_true((double)lao_v3_dot(end.across, end.across) <
+                    2.01 * (double)half_width * (double)half_width);
+        assert_true((double)lao_v3_dot(end.along, end.along) <
+                    1.01 * (double)half_width * (double)half_width);
     }
 }
 
@@ -166,8 +182,10 @@ static void degenerate_ends(void **state) {
     assert_true(fabsf(end.along.x + 0.5f) < 1e-6f);
     /* the two ends of a joint agree about their tangent, so that shading does not jump */
     for (int i = 0; i < 1000; i++) {
-        lao_v3 a = lao_v3_make(1, any(-0.5, 0.5), any(-1, 1)), b = lao_v3_make(1, any(-0.5, 0.5), any(-1, 1));
-        lao_line_end first = lao_line_join(away, a, b, 0.1f, 1), second = lao_line_join(away, b, a, 0.1f, -1);
+        lao_v3 a = lao_v3_make(1, any(-0.5, 0.5), any(-1, 1)),
+               b = lao_v3_make(1, any(-0.5, 0.5), any(-1, 1));
+        lao_line_end first = lao_line_join(away, a, b, 0.1f, 1),
+                     second = lao_line_join(away, b, a, 0.1f, -1);
         assert_memory_equal(&first.tangent, &second.tangent, sizeof first.tangent);
     }
 }
@@ -219,7 +237,9 @@ static void closed_lines_have_no_seam(void **state) {
         for (int i = 0; i < segments; i++) {
             joints += shared(&quads[i], &quads[(i + 1) % segments]);
         }
-        assert_int_equal(joints, corners == 3 ? 0 : corners); /* a triangle turns by 120 degrees, a square by 90 */
+        assert_int_equal(
+            joints,
+            corners == 3 ? 0 : corners); /* a triangle turns by 120 degrees, a square by 90 */
         assert_int_equal(lao_lines_destroy(context, lines), LAO_OK);
     }
     assert_int_equal(host.logs, 0);

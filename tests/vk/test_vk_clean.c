@@ -451,8 +451,9 @@ static void timings_and_reading(void **state) {
         assert_true(timings[i].milliseconds >= 0 && timings[i].milliseconds < 60000);
     assert_int_equal(f.logs, 0);
     static float data[64 * 64 * 4];
-    assert_int_equal(lao_read(context, frame.view, "out", 0, data, 64 * 64 * 4, &info),
-                     LAO_ERROR_INVALID_ARGUMENT); /* without a queue */
+    assert_int_equal(
+        lao_read(context, frame.view, "out", 0, data, sizeof data / sizeof data[0], &info),
+        LAO_ERROR_INVALID_ARGUMENT); /* without a queue */
     assert_int_equal(f.logs, 1);
     assert_int_equal(f.item, LAO_LOG_BACKEND_STATE);
     assert_non_null(strstr(f.text, "lao_vk_desc.queue"));

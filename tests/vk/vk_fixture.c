@@ -87,14 +87,14 @@ lao_lines_desc fixture_lines(uint32_t seed) {
     static float points[2 * LINE_POINTS * 3];
     static const uint32_t offsets[3] = {0, LINE_POINTS, 2 * LINE_POINTS};
     lao_lines_desc desc;
-    for (int i = 0; i < 2 * LINE_POINTS; i++) {
-        int line = i / LINE_POINTS;
+    for (size_t i = 0; i < 2 * LINE_POINTS; i++) {
+        int line = i >= LINE_POINTS;
         float t = 6.2831853f * (float)(i % LINE_POINTS) / (float)(LINE_POINTS - 1);
         points[3 * i + 0] = (line ? 1.2f : 2.0f) * cosf(t);
         points[3 * i + 1] = (line ? 1.2f : 2.0f) * sinf(t + 0.1f * (float)seed);
         points[3 * i + 2] = line ? 0.3f * t : 0.0f;
     }
-    memcpy(points + 3 * (LINE_POINTS - 1), points, 3 * sizeof points[0]);
+    memcpy(&points[3 * (LINE_POINTS - 1)], points, 3 * sizeof points[0]);
     memset(&desc, 0, sizeof desc);
     desc.line_count = 2;
     desc.point_count = 2 * LINE_POINTS;

@@ -1,0 +1,173 @@
+#!/usr/bin/env bash
+# Writes the shaders of the floors (bench_modules.h) as a C header, at build time:
+#   shaders.sh path/to/lineao_shaders.h out.h
+# The shared prologue and the vertex stage of the line pass come out of lineao_shaders.h, so that
+# they are those that lineao runs. Without glslangValidator there are no words for Vulkan, and
+# BENCH_HAVE_WORDS is 0.
+set -euo pipefail
+export LC_ALL=C
+shaders=$1 out=$2
+work=$(mktemp -d)
+trap 'rm -rf "$work"' EXIT
+words=0
+if command -v glslangValidator >/dev/null; then words=1; fi
+
+# text ARRAY: the text that an array of C string literals holds
+text() {
+  awk -v start="static const char *const $1[] = {" '
+    $0 == start {on = 1; found = 1; next}
+    on && /^};/ {on = 0}
+    on {
+      sub(/^ *"/, ""); sub(/\\n",$/, "")
+      gsub(/\\"/, "\""); gsub(/\\\\/, "\\"); print
+    }
+    END {exit !found}' "$shaders" || {
+    echo "shaders.sh: $shaders has no $1" >&2
+    exit 1
+  }
+}
+
+# taps SAMPLER LEVEL COUNT RADIUS: reads at literal offsets, a sunflower disc of whole texels
+taps() {
+  awk -v name="$1" -v level="$2" -v n="$3" -v radius="$4" 'BEGIN {
+    for (i = 0; i < n; i++) {
+      r = radius * sqrt((i + 0.5) / n); a = 2.39996323 * i
+      printf "sum += textureLod(%s, at%d + vec2(%.1f, %.1f) * step%d, 0.0);\n", name, level,
+        int(r * cos(a) + 100.5) - 100, int(r * sin(a) + 100.5) - 100, level
+    }
+  }'
+}
+
+# level SAMPLER LEVEL: where the pixel is on that level, and a step of one texel
+level() {
+  cat <<END
+#ifdef VULKAN
+vec2 step$2 = vec2(1.0);
+vec2 at$2 = vec2(pixel >> $2) + 0.5;
+#else
+vec2 step$2 = 1.0 / vec2(textureSize($1, 0));
+vec2 at$2 = (vec2(pixel >> $2) + 0.5) * step$2;
+#endif
+END
+}
+
+# The taps of 32 + 16 + 11 samples, and nothing else: of the depths alone, or of both images that
+# the anisotropic pass reads. The radii are those of the benchmark's scene, in texels of a level.
+tap_floor() {
+  local i name images=$1 counts=(32 16 11) radii=(8 14 12)
+  for i in 0 1 2; do echo "LAO_TEX($i, sampler2D, depth$i)"; done
+  if [ "$images" = 2 ]; then
+    for i in 0 1 2; do echo "LAO_TEX($((i + 3)), sampler2D, axial$i)"; done
+  fi
+  cat <<'END'
+LAO_OUT(0, vec4, out_sum)
+#ifdef LAO_FRAGMENT
+void main() {
+ivec2 pixel = LAO_PIXEL;
+vec4 sum = texelFetch(depth0, pixel, 0);
+if (sum.w < 0.5) {
+out_sum = vec4(0.0);
+return;
+}
+END
+  for i in 0 1 2; do
+    level "depth$i" "$i"
+    for name in depth axial; do
+      if [ "$name" = depth ] || [ "$images" = 2 ]; then
+        taps "$name$i" "$i" "${counts[i]}" "${radii[i]}"
+      fi
+    done
+  done
+  printf 'out_sum = vec4(sum.x + sum.y + sum.z + sum.w);\n}\n#endif\n'
+}
+
+# The vertex stage of the line pass with one flat colour.
+lines_floor() {
+  text lao_lines_lines | awk '/^LAO_OUT\(/ {exit} {print}'
+  printf 'LAO_OUT(0, vec4, out_color)\n#ifdef LAO_FRAGMENT\nvoid main() { out_color = vec4(1.0); }\n#endif\n'
+}
+
+# spirv NAME STAGE SUFFIX: the words of one stage as a C array
+spirv() {
+  {
+    printf '#version 450\n#define LAO_GLSL 1\n#define LAO_PRECISE 1\n#define LAO_%s 1\n' "$2"
+    cat "$work/prologue" "$work/$1.body"
+  } >"$work/$1.$3"
+  glslangValidator -V --target-env vulkan1.2 -g0 -x -o "$work/words" "$work/$1.$3" >"$work/log" || {
+    cat "$work/log" >&2
+    exit 1
+  }
+  printf 'static const uint32_t bench_words_%s_%s[] = {\n' "$1" "$3"
+  cat "$work/words"
+  echo "};"
+}
+
+# names MACRO NAME: the last argument of every LAO_... of a shader
+names() { sed -n "s/^$1(.*, *\([A-Za-z_0-9]*\)).*/\1/p" "$work/$2.body"; }
+
+# list TYPE ARRAY WORD...: an array of words, if there are any
+list() {
+  local type=$1 array=$2
+  shift 2
+  if [ $# -gt 0 ]; then
+    printf 'static %s %s[] = {' "$type" "$array"
+    printf '%s, ' "$@"
+    echo "};"
+  fi
+}
+
+# stage NAME SUFFIX: the fields of a lao_shader_stage
+stage() {
+  printf '{bench_text_%s, sizeof bench_text_%s / sizeof *bench_text_%s, ' "$1" "$1" "$1"
+  if [ $words = 1 ]; then
+    printf 'bench_words_%s_%s, sizeof bench_words_%s_%s / 4}' "$1" "$2" "$1" "$2"
+  else
+    printf 'NULL, 0}'
+  fi
+}
+
+# shader NAME has_vertex: its arrays to standard output, its row to $work/rows
+shader() {
+  local name=$1 constants textures types
+  printf 'static const char *const bench_text_%s[] = {\n' "$name"
+  sed 's/\\/\\\\/g; s/"/\\"/g; s/.*/    "&\\n",/' "$work/$name.body"
+  echo "};"
+  if [ $words = 1 ]; then
+    if [ "$2" = 1 ]; then spirv "$name" VERTEX vert; fi
+    spirv "$name" FRAGMENT frag
+  fi
+  mapfile -t constants < <(names LAO_CONSTANT "$name" | sed 's/^lao_constant_\(.*\)/"\1"/')
+  mapfile -t textures < <(names LAO_TEX "$name" | sed 's/.*/"&"/')
+  mapfile -t types < <(sed -n 's/^LAO_TEX([0-9]*, *\([A-Za-z0-9]*\),.*/\1/p' "$work/$name.body" |
+    sed 's/.*Buffer/LAO_TEXTURE_BUFFER/; s/.*sampler2D/LAO_TEXTURE_2D/')
+  list 'const char *const' "bench_constants_$name" "${constants[@]}"
+  list 'const char *const' "bench_textures_$name" "${textures[@]}"
+  list 'const lao_texture_type' "bench_types_$name" "${types[@]}"
+  {
+    printf '    {"floor_%s", ' "$name"
+    if [ ${#constants[@]} -gt 0 ]; then printf 'bench_constants_%s, ' "$name"; else printf 'NULL, '; fi
+    printf '%d, bench_textures_%s, bench_types_%s, %d, 1,\n     ' "${#constants[@]}" "$name" "$name" "${#textures[@]}"
+    if [ "$2" = 1 ]; then stage "$name" vert; else printf '{NULL, 0, NULL, 0}'; fi
+    printf ',\n     '
+    stage "$name" frag
+    printf '},\n'
+  } >>"$work/rows"
+}
+
+text lao_shader_prologue >"$work/prologue"
+lines_floor >"$work/lines.body"
+tap_floor 1 >"$work/taps.body"
+tap_floor 2 >"$work/fetches.body"
+{
+  echo "/* GENERATED by bench/shaders.sh */"
+  echo "/* clang-format off */"
+  echo "#define BENCH_HAVE_WORDS $words"
+  shader lines 1
+  shader taps 0
+  shader fetches 0
+  echo "static const lao_shader bench_shaders[] = {"
+  cat "$work/rows"
+  echo "};"
+  echo "/* clang-format on */"
+} >"$work/header"
+cp "$work/header" "$out"

@@ -1,0 +1,122 @@
+/* What the tests of the picture share: one context on GL and one on Vulkan per program, a frame
+ * drawn on either with all of its images read back as raw texels, line sets and cameras. */
+#ifndef RENDER_HOST_H
+#define RENDER_HOST_H
+
+#include "host_gl.h"
+#include "host_vk.h"
+#include "lineao.h"
+
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+
+#include <cmocka.h>
+
+enum { RENDER_MOST_IMAGES = 64, RENDER_MOST_SETS = 4 };
+
+/* ---- devices ---------------------------------------------------------------------------- */
+
+typedef struct render_device {
+    const char *name; /* "GL", "VK" */
+    host_gl *gl;      /* one of the two */
+    host_vk *vk;
+    lao_context *context;
+    int software;        /* Mesa's llvmpipe, for which the bounds are exact */
+    char log[1024];      /* of the last failure */
+    double milliseconds; /* of the last frame, compilation and all */
+} render_device;
+
+/* Opens a device with a context on it. `get_proc` NULL: the driver's; api_version 0: 1.3. Returns 0
+ * where there is none: the test skips, or fails where a GPU is expected. */
+int render_open_gl(render_device *device, void *(*get_proc)(const char *name, void *user));
+int render_open_vk(render_device *device, uint32_t api_version);
+/* Views are kept until here, so that no shader is compiled twice. Fine on a closed one. */
+void render_close(render_device *device);
+/* Skips the test, or fails it where LINEAO_EXPECT_GPU is set, unless the device is open. */
+void render_need(const render_device *device);
+
+/* ---- line sets -------------------------------------------------------------------------- */
+
+typedef struct render_lines {
+    uint32_t line_count, point_count, line_capacity, point_capacity;
+    uint32_t *offsets;
+    float *points;
+    uint8_t *colors;
+} render_lines;
+
+void render_point(render_lines *lines, double x, double y, double z);
+/* The points since the last call are a line. */
+void render_line(render_lines *lines);
+/* A scene made by code, scaled and moved. */
+void render_scene(render_lines *lines, const char *name, uint32_t count, double scale, double x,
+                  double y, double z);
+/* count random straight lines of this length with centres in the box of half size `extent`. */
+void render_scatter(render_lines *lines, uint32_t count, uint32_t seed, double length, double extent,
+                    double depth);
+void render_lines_free(render_lines *lines);
+
+/* ---- cameras ---------------------------------------------------------------------------- */
+
+/* Right-handed, clip depth 0 .. 1. The eye looks at the origin from `direction` times `distance`. */
+lao_camera render_camera(double x, double y, double z, double distance);
+/* Gives it a projection: fovy in degrees, or 0 and the full height in mm. */
+void render_perspective(lao_camera *camera, double fovy, double aspect, double near, double far);
+void render_orthographic(lao_camera *camera, double height, double aspect, double near, double far);
+void render_reverse(lao_camera *camera);
+/* Moves the picture by parts of its half size. */
+void render_shift(lao_camera *camera, double x, double y);
+
+/* ---- frames ----------------------------------------------------------------------------- */
+
+enum render_target { RENDER_NO_TARGET, RENDER_TARGET_RGBA8, RENDER_TARGET_RGBA32F };
+
+typedef struct render_shot {
+    uint32_t width, height;
+    lao_camera camera;
+    const render_lines *lines[RENDER_MOST_SETS];
+    const lao_settings *settings[RENDER_MOST_SETS];
+    uint32_t set_count;
+    float background[4], sphere[4];
+    enum render_target target;
+    uint32_t target_flags; /* LAO_HOST_... */
+    float target_value;    /* grey and alpha that it holds before */
+    int host_depth;        /* non-zero: a depth image of the host, written and read */
+    uint32_t depth_flags;
+    float depth_value; /* that it holds before */
+    const render_lines *depth_lines; /* (Optional) drawn into the host's depth by a frame before */
+} render_shot;
+
+/* Raw texels, row 0 at the bottom but for the host's images. */
+typedef struct render_image {
+    const char *name;
+    uint32_t level, width, height;
+    lao_format format;
+    uint8_t *data;
+} render_image;
+
+typedef struct render_result {
+    render_image images[RENDER_MOST_IMAGES];
+    uint32_t count;
+    lao_frame_uniforms frame; /* as the shaders saw it */
+    render_image target, depth_before, depth_after; /* data NULL: none */
+} render_result;
+
+/* Draws and reads everything; fails the test when something does. */
+void render_draw(render_device *device, const render_shot *shot, render_result *result);
+void render_free(render_result *result);
+const render_image *render_find(const render_result *result, const char *name, uint32_t level);
+/* The image's numbers as lao_read would decode one channel. For the caller's free(). */
+float *render_floats(const render_image *image, uint32_t channel);
+
+/* ---- comparison ------------------------------------------------------------------------- */
+
+typedef struct render_difference {
+    uint32_t texels;      /* that differ in any bit */
+    double largest, mean; /* of the components' numbers; NaN counts as 1e30 */
+} render_difference;
+
+/* Prints one line when they differ. */
+render_difference render_compare(const char *what, const render_image *a, const render_image *b);
+
+#endif

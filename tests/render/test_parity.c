@@ -1,0 +1,257 @@
+/* Proves that OpenGL and Vulkan draw the same picture: every image of the graph, on every level,
+ * has the same bits on both, for perspective, orthographic and reversed off-centre cameras, for all
+ * presets and for each way of leaving the default. Where the driver is not Mesa's llvmpipe the
+ * differences are printed instead. */
+#include "render_host.h"
+
+#include <stdio.h>
+#include <string.h>
+
+static render_device gl, vk;
+static render_lines board, few;
+
+enum { CAMERAS = 3 };
+
+/* Sizes are odd, so that levels end in half texels. */
+static render_shot mixed(int camera) {
+    render_shot shot;
+    double aspect = 95.0 / 87.0;
+    memset(&shot, 0, sizeof shot);
+    shot.width = 95;
+    shot.height = 87;
+    if (camera == 0) {
+        shot.camera = render_camera(0.3, 0.2, 1, 40);
+        render_perspective(&shot.camera, 35, aspect, 10, 90);
+    } else if (camera == 1) {
+        shot.camera = render_camera(-0.4, 0.3, 0.8, 50);
+        render_orthographic(&shot.camera, 24, aspect, 5, 95);
+    } else {
+        shot.camera = render_camera(0.5, -0.6, 0.7, 33);
+        render_perspective(&shot.camera, 50, aspect, 6, 80);
+        render_shift(&shot.camera, 0.2, -0.15);
+        render_reverse(&shot.camera);
+    }
+    shot.lines[0] = &board;
+    shot.set_count = 1;
+    for (int k = 0; k < 3; k++)
+        shot.background[k] = 0.2f + 0.3f * (float)k;
+    shot.background[3] = 1;
+    return shot;
+}
+
+static void compare(const char *what, const render_shot *shot) {
+    render_result a, b;
+    uint32_t differing = 0, covered = 0;
+    const render_image *color;
+    render_draw(&gl, shot, &a);
+    render_draw(&vk, shot, &b);
+    assert_int_equal(a.count, b.count);
+    for (uint32_t i = 0; i < a.count; i++) {
+        const render_image *other = render_find(&b, a.images[i].name, a.images[i].level);
+        assert_non_null(other);
+        differing += render_compare(what, &a.images[i], other).texels;
+    }
+    if (a.target.data)
+        differing += render_compare(what, &a.target, &b.target).texels;
+    if (a.depth_after.data)
+        differing += render_compare(what, &a.depth_after, &b.depth_after).texels;
+    color = render_find(&a, "color", 0);
+    assert_non_null(color);
+    for (uint32_t i = 0; i < color->width * color->height; i++)
+        covered += color->data[4 * i + 3] != 0;
+    assert_true(covered * 10 > color->width * color->height); /* there is something to compare */
+    assert_true(memcmp(&a.frame, &b.frame, sizeof a.frame) == 0);
+    if (gl.software && vk.software)
+        assert_int_equal(differing, 0);
+    else
+        print_message("%s: %u texels differ on this driver\n", what, differing);
+    render_free(&a);
+    render_free(&b);
+}
+
+/* One shot with settings given as text. */
+static void shoot(const char *what, int camera, const char *const *settings) {
+    const lao_module *module = lao_lines_module();
+    render_shot shot = mixed(camera);
+    lao_settings chosen;
+    memset(&chosen, 0, sizeof chosen);
+    for (; *settings; settings += 2)
+        assert_int_equal(lao_setting_parse(module, lao_setting_find(module, settings[0]),
+                                           settings[1], &chosen),
+                         0);
+    shot.settings[0] = &chosen;
+    compare(what, &shot);
+}
+
+static void both(void) {
+    render_need(&gl);
+    render_need(&vk);
+}
+
+/* ---------------------------------------------------------------------------------------- tests */
+
+static void presets(int camera) {
+    static const char *const names[] = {"default", "classic", "paper"};
+    both();
+    for (int i = 0; i < 3; i++) {
+        const char *settings[] = {"preset", names[i], NULL};
+        char what[64];
+        snprintf(what, sizeof what, "camera %d, %s", camera, names[i]);
+        shoot(what, camera, settings);
+    }
+}
+
+static void test_perspective(void **state) {
+    (void)state;
+    presets(0);
+}
+
+static void test_orthographic(void **state) {
+    (void)state;
+    presets(1);
+}
+
+static void test_reverse_off_centre(void **state) {
+    (void)state;
+    presets(2);
+}
+
+static void test_gaussian(void **state) {
+    static const char *const settings[] = {"pyramid", "gaussian", NULL};
+    (void)state;
+    both();
+    shoot("gaussian", 0, settings);
+}
+
+static void test_author_light(void **state) {
+    static const char *const settings[] = {"light", "author", NULL};
+    (void)state;
+    both();
+    shoot("author", 0, settings);
+}
+
+static void test_smoothing(void **state) {
+    static const char *const settings[] = {"smoothing", "2", NULL};
+    (void)state;
+    both();
+    shoot("smoothing", 0, settings);
+}
+
+static void test_supersampling(void **state) {
+    static const char *const one[] = {"supersampling", "1", NULL};
+    static const char *const three[] = {"supersampling", "3", NULL};
+    (void)state;
+    both();
+    shoot("supersampling 1", 0, one);
+    shoot("supersampling 3", 0, three);
+}
+
+static void test_samples(void **state) {
+    static const char *const settings[] = {"samples", "20", NULL};
+    (void)state;
+    both();
+    shoot("20 samples", 0, settings);
+}
+
+static void test_levels(void **state) {
+    static const char *const one[] = {"levels", "1", NULL}, *const five[] = {"levels", "5", NULL};
+    (void)state;
+    both();
+    shoot("1 level", 0, one);
+    shoot("5 levels", 0, five);
+}
+
+static void test_two_sets(void **state) {
+    render_shot shot = mixed(0);
+    lao_settings wide, narrow;
+    (void)state;
+    both();
+    memset(&wide, 0, sizeof wide);
+    memset(&narrow, 0, sizeof narrow);
+    wide.width = 1.5f;
+    narrow.width = 0.3f;
+    narrow.preset = 1;
+    narrow.strength = 2;
+    shot.lines[1] = &few;
+    shot.settings[0] = &narrow;
+    shot.settings[1] = &wide;
+    shot.set_count = 2;
+    shot.target = RENDER_TARGET_RGBA8;
+    shot.target_flags = LAO_HOST_TOP_DOWN;
+    compare("two sets", &shot);
+}
+
+static void test_targets(void **state) {
+    render_shot shot = mixed(1);
+    (void)state;
+    both();
+    shot.target = RENDER_TARGET_RGBA32F;
+    shot.target_value = 0.3f;
+    shot.target_flags = LAO_HOST_ENCODE_SRGB;
+    shot.background[3] = 0.5f;
+    compare("half transparent, decoded", &shot);
+    shot.target = RENDER_TARGET_RGBA8;
+    shot.target_flags = 0;
+    shot.background[3] = 0;
+    compare("transparent", &shot);
+}
+
+static void test_host_depth(void **state) {
+    render_shot shot = mixed(0);
+    lao_settings settings;
+    (void)state;
+    both();
+    memset(&settings, 0, sizeof settings);
+    settings.width = 0.7f;
+    shot.settings[0] = &settings;
+    shot.host_depth = 1;
+    shot.depth_value = 1;
+    shot.depth_lines = &few;
+    compare("host's depth", &shot);
+    shot = mixed(2);
+    shot.settings[0] = &settings;
+    shot.host_depth = 1;
+    shot.depth_flags = LAO_HOST_TOP_DOWN;
+    shot.depth_value = 0;
+    shot.depth_lines = &few;
+    compare("host's depth, reversed, top down", &shot);
+}
+
+static int setup(void **state) {
+    (void)state;
+    /* two layers of the board of degenerate lines, and lines in depth */
+    render_scene(&board, "stress", 48, 0.28, -14, 8.4, 3);
+    render_scene(&board, "helix", 20, 0.25, 0, 0, 0);
+    render_scatter(&board, 120, 1, 9, 12, 9);
+    render_scatter(&few, 30, 2, 15, 9, 9);
+    render_open_gl(&gl, NULL);
+    render_open_vk(&vk, 0);
+    return 0;
+}
+
+static int teardown(void **state) {
+    (void)state;
+    render_close(&gl);
+    render_close(&vk);
+    render_lines_free(&board);
+    render_lines_free(&few);
+    return 0;
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_perspective),
+        cmocka_unit_test(test_orthographic),
+        cmocka_unit_test(test_reverse_off_centre),
+        cmocka_unit_test(test_gaussian),
+        cmocka_unit_test(test_author_light),
+        cmocka_unit_test(test_smoothing),
+        cmocka_unit_test(test_supersampling),
+        cmocka_unit_test(test_samples),
+        cmocka_unit_test(test_levels),
+        cmocka_unit_test(test_two_sets),
+        cmocka_unit_test(test_targets),
+        cmocka_unit_test(test_host_depth),
+    };
+    return cmocka_run_group_tests(tests, setup, teardown);
+}
