@@ -457,7 +457,7 @@ typedef struct lao_view_desc {
 enum { LAO_VIEW_KEEP_IMAGES = 1 /* no image shares memory with another, so that lao_read can read any: tests, tools */ };
 
 typedef struct lao_set {
-    lao_lines lines;
+    lao_lines lines;              /* id 0: none, a set that draws nothing */
     const lao_settings *settings; /* NULL: the recommended ones. `supersampling` is taken from the first set */
 } lao_set;
 
@@ -738,7 +738,7 @@ typedef struct lao_execution {
     uint32_t parity;              /* which of slot[2] */
     const void *frame_uniforms;   /* lao_frame_uniforms */
     uint32_t frame_size;          /* its bytes */
-    const void *set_uniforms;     /* per set: lao_host.settings_size bytes */
+    const void *set_uniforms;     /* blocks of lao_host.settings_size bytes: set * graph.module_count + module */
     const lao_draw *draws;        /* per set */
     uint32_t set_count;           /* at least 1; lao_occlude has one set without chunks */
     const lao_import *imports;
@@ -3464,11 +3464,14 @@ static void lao__scene_sphere(lao_context *context, const lao_frame *frame, floa
     }
     for (s = 0; s < frame->set_count; s++) {
         const lao__lines *lines = lao__lines_get(context, frame->sets[s].lines);
-        for (k = 0; k < 3 && lines->has_points; k++) {
+        if (!lines || !lines->has_points) {
+            continue;
+        }
+        for (k = 0; k < 3; k++) {
             lo[k] = any && lo[k] < lines->bounds[0][k] ? lo[k] : lines->bounds[0][k];
             hi[k] = any && hi[k] > lines->bounds[1][k] ? hi[k] : lines->bounds[1][k];
         }
-        any |= lines->has_points;
+        any = 1;
     }
     for (k = 0; k < 3; k++) {
         sphere[k] = 0.5 * (lo[k] + hi[k]);
@@ -3536,7 +3539,7 @@ static lao_result lao__frame_sets(lao_context *context, lao__view *view, const l
         const lao__lines *lines = s < frame->set_count ? lao__lines_get(context, frame->sets[s].lines) : NULL;
         const lao_settings *settings = s < frame->set_count ? frame->sets[s].settings : NULL;
         lao_result result;
-        if (s < frame->set_count && !lines) {
+        if (s < frame->set_count && frame->sets[s].lines.id != 0 && !lines) {
             return lao__fail(context, LAO_LOG_LINES_HANDLE, "lao_frame.sets");
         }
         result = lao__set_resolve(context, view, s, settings, structural);
@@ -3625,10 +3628,8 @@ lao_result lao_render(lao_context *context, const lao_frame *frame) {
 
 lao_result lao_occlude(lao_context *context, const lao_frame *frame, const lao_settings *settings) {
     static const char *const needed[3] = {"color", "tangent", "depth"};
-    lao_lines_desc empty;
     lao_set set;
     lao_frame own;
-    lao_result result;
     uint32_t i, k, found = 0;
     if (!context || !frame || (frame->import_count > 0 && !frame->imports)) {
         return context ? lao__fail(context, LAO_LOG_NULL_ARGUMENT, "lao_occlude") : LAO_ERROR_INVALID_ARGUMENT;
@@ -3641,18 +3642,12 @@ lao_result lao_occlude(lao_context *context, const lao_frame *frame, const lao_s
     if (found != 3 || !(frame->sphere[3] > 0)) {
         return lao__fail(context, LAO_LOG_IMPORT, "lao_occlude needs color, tangent, depth and a sphere");
     }
-    memset(&empty, 0, sizeof empty);
-    result = lao_lines_create(context, &empty, &set.lines);
-    if (result != LAO_OK) {
-        return result;
-    }
+    set.lines.id = 0;
     set.settings = settings;
     own = *frame;
     own.sets = &set;
     own.set_count = 1;
-    result = lao_render(context, &own);
-    lao_lines_destroy(context, set.lines);
-    return result;
+    return lao_render(context, &own);
 }
 
 /* ============================================================================================================= reading */

@@ -304,7 +304,7 @@ static bool scene_run(const bench_options *options, const char *path, uint32_t l
 }
 
 static void note(cJSON *notes, const char *before, const char *after) {
-    char line[512];
+    char line[1200];
     snprintf(line, sizeof line, "%s%s", before, after);
     cJSON_AddItemToArray(notes, cJSON_CreateString(line));
 }

@@ -146,7 +146,7 @@ static void print_scene(const cJSON *scene) {
     for (int i = 0; i < count; i++)
         printf("%9s %s%12s", "median", backends[i]->string, "min");
     printf("\n");
-    cJSON_ArrayForEach(preset, count ? get(backends[0], "presets") : NULL) {
+    cJSON_ArrayForEach(preset, get(count ? backends[0] : NULL, "presets")) {
         for (int i = 0; i < count; i++)
             cells[i] = get(get(backends[i], "presets"), preset->string);
         print_preset(preset->string, cells, count);

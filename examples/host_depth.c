@@ -135,23 +135,20 @@ static bool draw_lines(const stage *s, lao_context *context, lao_image color, la
 /* ------------------------------------------------------------------------------------- OpenGL */
 
 /* X(name, NAME): the functions that this host itself uses. */
+/* clang-format off */
 #define GL_FUNCTIONS(X)                                                                            \
-    X(CreateShader, CREATESHADER)                                                                  \
-    X(ShaderSource, SHADERSOURCE) X(CompileShader, COMPILESHADER) X(CreateProgram, CREATEPROGRAM)  \
-        X(AttachShader, ATTACHSHADER) X(LinkProgram, LINKPROGRAM) X(GetProgramiv, GETPROGRAMIV)    \
-            X(UseProgram, USEPROGRAM) X(GetUniformLocation, GETUNIFORMLOCATION)                    \
-                X(UniformMatrix4fv, UNIFORMMATRIX4FV) X(Uniform4fv, UNIFORM4FV)                    \
-                    X(GenVertexArrays, GENVERTEXARRAYS) X(BindVertexArray, BINDVERTEXARRAY)        \
-                        X(GenTextures, GENTEXTURES) X(BindTexture, BINDTEXTURE)                    \
-                            X(TexImage2D, TEXIMAGE2D) X(GenFramebuffers, GENFRAMEBUFFERS)          \
-                                X(BindFramebuffer, BINDFRAMEBUFFER)                                \
-                                    X(FramebufferTexture2D, FRAMEBUFFERTEXTURE2D)                  \
-                                        X(Viewport, VIEWPORT) X(ClearColor, CLEARCOLOR)            \
-                                            X(ClearDepth, CLEARDEPTH) X(Clear, CLEAR)              \
-                                                X(Enable, ENABLE) X(DepthFunc, DEPTHFUNC)          \
-                                                    X(DrawArrays, DRAWARRAYS)                      \
-                                                        X(ReadPixels, READPIXELS)                  \
-                                                            X(ClipControl, CLIPCONTROL)
+    X(CreateShader, CREATESHADER) X(ShaderSource, SHADERSOURCE) X(CompileShader, COMPILESHADER)    \
+    X(CreateProgram, CREATEPROGRAM) X(AttachShader, ATTACHSHADER) X(LinkProgram, LINKPROGRAM)      \
+    X(GetProgramiv, GETPROGRAMIV) X(UseProgram, USEPROGRAM)                                        \
+    X(GetUniformLocation, GETUNIFORMLOCATION) X(UniformMatrix4fv, UNIFORMMATRIX4FV)                \
+    X(Uniform4fv, UNIFORM4FV) X(GenVertexArrays, GENVERTEXARRAYS)                                  \
+    X(BindVertexArray, BINDVERTEXARRAY) X(GenTextures, GENTEXTURES) X(BindTexture, BINDTEXTURE)    \
+    X(TexImage2D, TEXIMAGE2D) X(GenFramebuffers, GENFRAMEBUFFERS)                                  \
+    X(BindFramebuffer, BINDFRAMEBUFFER) X(FramebufferTexture2D, FRAMEBUFFERTEXTURE2D)              \
+    X(Viewport, VIEWPORT) X(ClearColor, CLEARCOLOR) X(ClearDepth, CLEARDEPTH) X(Clear, CLEAR)      \
+    X(Enable, ENABLE) X(DepthFunc, DEPTHFUNC) X(DrawArrays, DRAWARRAYS) X(ReadPixels, READPIXELS)  \
+    X(ClipControl, CLIPCONTROL)
+/* clang-format on */
 
 typedef struct gl_functions {
 #define GL_MEMBER(name, NAME) PFNGL##NAME##PROC name;

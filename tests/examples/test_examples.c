@@ -251,5 +251,8 @@ int main(int count, char **arguments) {
     hello[0] = arguments[1];
     hello[1] = arguments[2];
     host_depth = arguments[3];
+    /* a dozen programs compile the same shaders: they share a cache of this test's own */
+    setenv("MESA_SHADER_CACHE_DISABLE", "false", 1);
+    setenv("MESA_SHADER_CACHE_DIR", "test_examples.cache", 1);
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -15,16 +15,15 @@
 
 enum { WIDTH = 96, HEIGHT = 64, SIZE = WIDTH * HEIGHT * 4, POINTS = 40, LINES = 24 };
 
+/* clang-format off */
 #define GL_FUNCTIONS(X)                                                                            \
-    X(GenTextures, GENTEXTURES)                                                                    \
-    X(BindTexture, BINDTEXTURE)                                                                    \
-    X(TexImage2D, TEXIMAGE2D) X(GenRenderbuffers, GENRENDERBUFFERS)                                \
-        X(BindRenderbuffer, BINDRENDERBUFFER) X(RenderbufferStorage, RENDERBUFFERSTORAGE)          \
-            X(GenFramebuffers, GENFRAMEBUFFERS) X(BindFramebuffer, BINDFRAMEBUFFER)                \
-                X(FramebufferTexture2D, FRAMEBUFFERTEXTURE2D)                                      \
-                    X(FramebufferRenderbuffer, FRAMEBUFFERRENDERBUFFER)                            \
-                        X(ClearBufferfv, CLEARBUFFERFV) X(ReadPixels, READPIXELS)                  \
-                            X(GetError, GETERROR) X(DrawBuffers, DRAWBUFFERS)
+    X(GenTextures, GENTEXTURES) X(BindTexture, BINDTEXTURE) X(TexImage2D, TEXIMAGE2D)              \
+    X(GenRenderbuffers, GENRENDERBUFFERS) X(BindRenderbuffer, BINDRENDERBUFFER)                    \
+    X(RenderbufferStorage, RENDERBUFFERSTORAGE) X(GenFramebuffers, GENFRAMEBUFFERS)                \
+    X(BindFramebuffer, BINDFRAMEBUFFER) X(FramebufferTexture2D, FRAMEBUFFERTEXTURE2D)              \
+    X(FramebufferRenderbuffer, FRAMEBUFFERRENDERBUFFER) X(ClearBufferfv, CLEARBUFFERFV)            \
+    X(ReadPixels, READPIXELS) X(GetError, GETERROR) X(DrawBuffers, DRAWBUFFERS)
+/* clang-format on */
 
 static struct gl_functions {
 #define GL_MEMBER(name, NAME) PFNGL##NAME##PROC name;
