@@ -101,7 +101,7 @@ LAO_API const char *lao_result_text(lao_result result);
     X(CAMERA, LAO_ERROR_INVALID_ARGUMENT, "a camera matrix is singular, not finite or not a projection")               \
     X(SETTING_RANGE, LAO_ERROR_INVALID_ARGUMENT, "a setting is outside its range")                                     \
     X(IMPORT, LAO_ERROR_INVALID_ARGUMENT, "an imported image is not part of the graph or has the wrong size")          \
-    X(TARGET, LAO_ERROR_INVALID_ARGUMENT, "the frame has no target image")                                             \
+    X(TARGET, LAO_ERROR_INVALID_ARGUMENT, "the target's size differs from the view's")                                           \
     X(FRAME_MEMORY, LAO_ERROR_OUT_OF_MEMORY, "no memory for the frame")                                                \
     X(IMAGE_UNKNOWN, LAO_ERROR_INVALID_ARGUMENT, "no image of that name and level in the plan of this view")           \
     X(READ_SIZE, LAO_ERROR_INVALID_ARGUMENT, "the buffer is too small for the image")                                  \
@@ -458,7 +458,7 @@ enum { LAO_VIEW_KEEP_IMAGES = 1 /* no image shares memory with another, so that 
 
 typedef struct lao_set {
     lao_lines lines;              /* id 0: none, a set that draws nothing */
-    const lao_settings *settings; /* NULL: the recommended ones. `supersampling` is taken from the first set */
+    const lao_settings *settings; /* NULL: the recommended ones. `supersampling` and `depth_unit` are the first set's */
 } lao_set;
 
 enum { LAO_FRAME_TIMINGS = 1 /* measure every pass (GL: finishes after each; slow) */ };
@@ -1184,8 +1184,10 @@ LAO_FN lao_v3 lao_towards_eye(lao_v2 slope, float orthographic) {
 LAO_FN float lao_zoom(lao_m4 projection, lao_v4 viewport, lao_v3 p, lao_v3 o) {
     lao_v4 a = lao_project(projection, p);
     lao_v4 b = lao_project(projection, lao_v3_add(p, o));
-    LAO_EXACT float x = 0.5f * viewport.x * (b.x / b.w - a.x / a.w);
-    LAO_EXACT float y = 0.5f * viewport.y * (b.y / b.w - a.y / a.w);
+    LAO_EXACT float aw = lao_max(lao_abs(a.w), 1.0e-6f);
+    LAO_EXACT float bw = lao_max(lao_abs(b.w), 1.0e-6f);
+    LAO_EXACT float x = 0.5f * viewport.x * (b.x / bw - a.x / aw);
+    LAO_EXACT float y = 0.5f * viewport.y * (b.y / bw - a.y / aw);
     LAO_EXACT float r = lao_sqrt(x * x + y * y);
     return r;
 }
@@ -1765,7 +1767,8 @@ static const char *lao__number(const char *text, double *value) {
         if (*text == '+' || *text == '-') {
             exponent_sign = *text++ == '-' ? -1 : 1;
         }
-        for (; *text >= '0' && *text <= '9' && exponent < 1000; text++) {
+        digits = 0;
+        for (; *text >= '0' && *text <= '9' && exponent < 1000; text++, digits++) {
             exponent = exponent * 10 + (*text - '0');
         }
     }
@@ -1828,8 +1831,10 @@ int lao_camera_canonical(const lao_camera *camera, lao_camera *canonical) {
             v[r][c] = camera->view[c * 4 + r];
         }
     }
-    /* The shaders' view rays know no shear: rows (a 0 b c), (0 d e f), (0 0 g h), (0 0 +-1 0) or (0 0 0 1). */
+    /* The shaders' view rays know no shear: rows (a 0 b 0), (0 d e 0), (0 0 g h), (0 0 +-1 0), or (a 0 0 c), (0 d 0 f),
+       (0 0 g h), (0 0 0 1). */
     if (p[0][1] != 0 || p[1][0] != 0 || p[2][0] != 0 || p[2][1] != 0 || p[3][0] != 0 || p[3][1] != 0 ||
+        p[0][p[3][2] == 0 ? 2 : 3] != 0 || p[1][p[3][2] == 0 ? 2 : 3] != 0 ||
         (p[3][2] == 0) == (p[3][3] == 0) || p[0][0] == 0 || p[1][1] == 0 || p[2][2] * p[3][3] == p[2][3] * p[3][2]) {
         return -1;
     }
@@ -1880,6 +1885,7 @@ int lao_camera_canonical(const lao_camera *camera, lao_camera *canonical) {
 
 /* =============================================================================================================== graph */
 
+#define LAO__MOST_SETTINGS 64u /* bits of `set` */
 #define LAO__BUFFER_MARK '#'
 #define LAO__IMPORT_MARK '@'
 
@@ -2004,7 +2010,15 @@ static int lao__check_names(const lao_graph *graph, char *text, size_t size) {
                                   module->settings[i].name);
             }
         }
+        if (module->setting_count > LAO__MOST_SETTINGS) {
+            return lao__fault(text, size, "module '%s' has more than 64 settings%s", module->name, "");
+        }
         for (i = 0; i < module->preset_count; i++) {
+            int preset = lao_setting_find(module, "preset");
+            if (preset < 0 || lao__choice(module->settings[preset].choices, module->presets[i].preset,
+                                          strlen(module->presets[i].preset)) < 0) {
+                return lao__fault(text, size, "module '%s' has no preset '%s'", module->name, module->presets[i].preset);
+            }
             if (lao_setting_find(module, module->presets[i].setting) < 0) {
                 return lao__fault(text, size, "preset '%s' names the unknown setting '%s'", module->presets[i].preset,
                                   module->presets[i].setting);
@@ -2032,9 +2046,16 @@ static int lao__check_when(const lao_graph *graph, uint32_t module, const char *
                : 0;
 }
 
+/* Whether two references of a row name one level in every turn. */
+static int lao__same_level(const lao_pass_row *row, const lao_reference *a, const lao_reference *b) {
+    int levels = row->repeat == LAO_REPEAT_LEVELS_UP || row->repeat == LAO_REPEAT_LEVELS_DOWN;
+    uint32_t i = a->level == LAO_LEVEL_INDEX ? a->level_index : 0, k = b->level == LAO_LEVEL_INDEX ? b->level_index : 0;
+    return a->level == b->level ? i == k : !levels && i == k;
+}
+
 /* Writes and reads of one row against everything written so far. */
 static int lao__check_row(const lao_graph *graph, uint32_t index, const lao_pass_row *row, char *text, size_t size) {
-    uint32_t r, w, p;
+    uint32_t r, w, p, end;
     for (r = 0; r < LAO_MAX_READS && row->reads[r].image; r++) {
         const lao_reference *read = &row->reads[r];
         uint32_t image;
@@ -2052,18 +2073,22 @@ static int lao__check_row(const lao_graph *graph, uint32_t index, const lao_pass
         for (w = 0; w < LAO_MAX_WRITES && row->writes[w].image; w++) {
             const lao_reference *write = &row->writes[w];
             if (strcmp(write->image, read->image) == 0) {
-                if (write->level == read->level && write->level_index == read->level_index && write->phase == read->phase) {
+                if (write->phase == read->phase && lao__same_level(row, write, read)) {
                     return lao__fault(text, size, "pass '%s' reads what it writes: '%s'", row->name, read->image);
                 }
             }
         }
-        written = (graph->images[image]->flags & LAO_IMAGE_IMPORT) != 0 || read->phase == LAO_PHASE_PREVIOUS;
-        for (p = 0; p <= index && !written; p++) {
+        if (read->phase == LAO_PHASE_PREVIOUS && !(graph->images[image]->flags & LAO_IMAGE_HISTORY)) {
+            return lao__fault(text, size, "pass '%s' reads the last frame's '%s', which is not kept", row->name, read->image);
+        }
+        written = (graph->images[image]->flags & LAO_IMAGE_IMPORT) != 0;
+        end = read->phase == LAO_PHASE_PREVIOUS ? graph->pass_count : index + 1;
+        for (p = 0; p < end && !written; p++) {
             const lao_pass_row *earlier = graph->passes[p];
             for (w = 0; w < LAO_MAX_WRITES && earlier->writes[w].image; w++) {
                 /* a repeated row may read what its earlier turn wrote */
                 written |= strcmp(earlier->writes[w].image, read->image) == 0 &&
-                           (p < index || row->repeat == LAO_REPEAT_LEVELS_DOWN);
+                           (p != index || row->repeat == LAO_REPEAT_LEVELS_DOWN || read->phase == LAO_PHASE_PREVIOUS);
             }
         }
         if (!written) {
@@ -2127,12 +2152,11 @@ int lao_graph_check(const lao_graph *graph, const lao_shader *shaders, uint32_t 
         }
         for (k = 0; shaders && k < shader_count && strcmp(shaders[k].name, row->shader) != 0; k++) {
         }
-        for (used = 0; shaders && k == shader_count && used < graph->modules[m]->shader_count; used++) {
-            if (strcmp(graph->modules[m]->shaders[used].name, row->shader) == 0) {
-                k = 0;
-            }
+        used = shaders && k < shader_count;
+        for (k = 0; k < graph->modules[m]->shader_count; k++) {
+            used |= strcmp(graph->modules[m]->shaders[k].name, row->shader) == 0;
         }
-        if (shaders && k == shader_count) {
+        if (shaders && !used) {
             return lao__fault(text, text_size, "pass '%s' has no shader '%s'", row->name, row->shader);
         }
     }
@@ -2193,9 +2217,8 @@ typedef struct lao__planner {
     lao_allocator allocator;
     lao_plan *plan;
     uint32_t supersampling;
-    uint8_t *phase;   /* per image: which ping-pong partner is THIS */
-    uint8_t *written; /* per image: in this frame */
-    int failed;       /* out of memory */
+    uint8_t *phase; /* per image: which ping-pong partner is THIS */
+    int failed;     /* out of memory */
 } lao__planner;
 
 void lao_plan_free(const lao_allocator *allocator, lao_plan *plan) {
@@ -2354,6 +2377,22 @@ static int lao__imported_away(const lao__planner *p, const lao_pass_row *row) {
     return produced > 0;
 }
 
+/* Whether one of the first `end` steps writes it. */
+static int lao__is_written(const lao_plan *plan, uint32_t instance, uint32_t end) {
+    uint32_t s, i;
+    for (s = 0; s < end; s++) {
+        for (i = 0; i < plan->steps[s].color_count; i++) {
+            if (plan->steps[s].colors[i].instance == instance) {
+                return 1;
+            }
+        }
+        if (plan->steps[s].depth.instance == instance) {
+            return 1;
+        }
+    }
+    return 0;
+}
+
 static void lao__step_write(lao__planner *p, lao_plan_step *step, const lao_reference *reference) {
     uint32_t instance = lao__resolve(p, step, reference);
     uint32_t image = lao__image_find(p->graph, reference->image);
@@ -2368,7 +2407,7 @@ static void lao__step_write(lao__planner *p, lao_plan_step *step, const lao_refe
     }
     write.clear = reference->load == LAO_LOAD_DISCARD ? 2 : reference->load == LAO_LOAD_CLEAR;
     if (reference->load == LAO_LOAD_KEEP && !(row->flags & LAO_IMAGE_IMPORT)) {
-        write.clear = p->written[image] ? 0 : 1;
+        write.clear = instance != LAO_NO_INDEX && lao__is_written(p->plan, instance, p->plan->step_count) ? 0 : 1;
     }
     if (is_depth) {
         step->depth = write;
@@ -2378,7 +2417,6 @@ static void lao__step_write(lao__planner *p, lao_plan_step *step, const lao_refe
     if (instance != LAO_NO_INDEX) {
         step->width = p->plan->instances[instance].width;
         step->height = p->plan->instances[instance].height;
-        p->written[image] = 1;
     }
 }
 
@@ -2603,11 +2641,10 @@ lao_result lao_plan_make(const lao_graph *graph, const lao_plan_desc *desc, cons
     p.desc = desc;
     p.allocator = lao__allocator_or_default(allocator);
     p.plan = plan;
-    p.phase = (uint8_t *)lao__new(&p.allocator, graph->image_count, 2);
+    p.phase = (uint8_t *)lao__new(&p.allocator, graph->image_count, 1);
     if (!p.phase) {
         return LAO_ERROR_OUT_OF_MEMORY;
     }
-    p.written = p.phase + graph->image_count;
     p.supersampling = (uint32_t)lao__value(&p, 0, 0, "supersampling");
     p.supersampling = p.supersampling < 1 ? 1 : p.supersampling;
     plan->step_count = plan->instance_count = plan->slot_count = plan->barrier_count = 0;
@@ -2634,7 +2671,7 @@ lao_result lao_plan_make(const lao_graph *graph, const lao_plan_desc *desc, cons
     if (!p.failed) {
         lao__plan_barriers(&p);
     }
-    lao__delete(&p.allocator, p.phase, graph->image_count, 2);
+    lao__delete(&p.allocator, p.phase, graph->image_count, 1);
     if (p.failed) {
         plan->step_count = 0;
         return LAO_ERROR_OUT_OF_MEMORY;
@@ -2838,6 +2875,9 @@ static lao_result lao__graph_open(lao_context *context, const lao_desc *desc) {
     const lao_module *modules[16];
     char text[256];
     uint32_t m;
+    if (desc->module_count > 0 && !desc->modules) {
+        return lao__fail(context, LAO_LOG_NULL_ARGUMENT, "lao_desc.modules");
+    }
     if (desc->module_count >= 16) {
         return lao__fail(context, LAO_LOG_GRAPH_BROKEN, "more than 15 modules");
     }
@@ -3342,9 +3382,8 @@ static lao_result lao__set_resolve(lao_context *context, lao__view *view, uint32
     for (m = 0; m < context->graph.module_count; m++) {
         const lao_module *module = context->graph.modules[m];
         uint8_t *block = view->uniforms + ((size_t)set * context->graph.module_count + m) * context->host.settings_size;
-        float fresh[64];
+        float fresh[LAO__MOST_SETTINGS];
         int fault;
-        LAO_ASSERT(module->setting_count <= 64);
         fault = lao_settings_resolve(module, m == 0 ? settings : NULL, fresh);
         if (fault >= 0) {
             const lao_setting_row *row = &module->settings[fault];
@@ -3391,6 +3430,9 @@ static void lao__plan_key(const lao__view *view, const lao_frame *frame, uint32_
 
 static lao_result lao__imports_check(lao_context *context, const lao__view *view, const lao_frame *frame) {
     uint32_t i, factor = (uint32_t)view->values[LAO_SETTING_ID_supersampling];
+    if (frame->target.present && (frame->target.width != view->width || frame->target.height != view->height)) {
+        return lao__fail(context, LAO_LOG_TARGET, "lao_frame.target");
+    }
     for (i = 0; i < frame->import_count; i++) {
         const lao_import *import = &frame->imports[i];
         uint32_t image = import->image ? lao__image_find(&context->graph, import->image) : LAO_NO_INDEX;
@@ -3406,10 +3448,33 @@ static lao_result lao__imports_check(lao_context *context, const lao__view *view
     return LAO_OK;
 }
 
-static lao_result lao__units_check(lao_context *context, const lao_plan *plan) {
+/* An import drops the passes that make its image; what else they made must then not be missed. */
+static const char *lao__missing_image(const lao_graph *graph, const lao_plan *plan, uint32_t s) {
+    const lao_plan_step *step = &plan->steps[s];
+    uint32_t i;
+    for (i = 0; i < step->read_count; i++) {
+        if (step->reads[i] < plan->instance_count) {
+            const lao_plan_instance *instance = &plan->instances[step->reads[i]];
+            const lao_image_row *row = graph->images[instance->image];
+            int previous = (row->flags & LAO_IMAGE_HISTORY) && instance->phase == 1;
+            if (instance->import == LAO_NO_INDEX && !previous && !lao__is_written(plan, step->reads[i], s)) {
+                return row->name;
+            }
+        }
+    }
+    return NULL;
+}
+
+static lao_result lao__plan_check(lao_context *context, const lao_plan *plan) {
     uint32_t s, i, n;
+    char text[160];
     for (s = 0; s < plan->step_count; s++) {
         const lao_plan_step *step = &plan->steps[s];
+        const char *missing = lao__missing_image(&context->graph, plan, s);
+        if (missing) {
+            snprintf(text, sizeof text, "'%s' is not imported, and nothing else makes it", missing);
+            return lao__fail(context, LAO_LOG_IMPORT, text);
+        }
         for (i = 0, n = 0; i < step->read_count; i++) {
             n += step->reads[i] != LAO_NO_INDEX && (i == 0 || step->reads[i] != step->reads[i - 1]);
         }
@@ -3443,7 +3508,7 @@ static lao_result lao__view_plan(lao_context *context, lao__view *view, const la
     if (lao_plan_make(&context->graph, &desc, &context->allocator, &view->plan) != LAO_OK) {
         return lao__fail(context, LAO_LOG_PLAN_MEMORY, NULL);
     }
-    result = lao__units_check(context, &view->plan);
+    result = lao__plan_check(context, &view->plan);
     if (result == LAO_OK) {
         result = context->backend.view_prepare(context->self, view->backend_view, &view->plan, context->shaders);
     }
@@ -3925,8 +3990,13 @@ static lao_result lao__null_read(void *self, void *view, const lao_plan *plan, u
     (void)view;
     (void)plan;
     (void)slot;
-    memset(data, 0, size);
-    return lao__null_call((lao__null *)self, "read");
+    {
+        lao_result result = lao__null_call((lao__null *)self, "read");
+        if (result == LAO_OK) {
+            memset(data, 0, size);
+        }
+        return result;
+    }
 }
 
 static lao_result lao__null_timings(void *self, void *view, double *milliseconds, uint32_t step_count) {

@@ -45,18 +45,18 @@ static void keep(series *s, double value) {
 }
 
 /* The median of a quotient that is taken frame by frame: both numbers of a frame were measured one
- * after the other, so that a busy machine disturbs the quotient little. Below 0: there is none. */
+ * after the other, so that a busy machine disturbs the quotient little. Frames in which noise hides
+ * one of them do not count. Below 0: there is none. */
 static double quotient(const series *a, const series *b) {
     series q;
     if (!a || !b || !a->count || a->count != b->count)
         return -1;
     q.count = 0;
     for (uint32_t i = 0; i < a->count; i++) {
-        if (!(b->values[i] > 0))
-            return -1;
-        keep(&q, a->values[i] / b->values[i]);
+        if (a->values[i] > 0 && b->values[i] > 0)
+            keep(&q, a->values[i] / b->values[i]);
     }
-    return median(&q);
+    return q.count ? median(&q) : -1;
 }
 
 static double rounded(double value) {
@@ -101,7 +101,7 @@ typedef struct side {
     bench_floors floors;
     bool has_floors;
     lao_lines lines[2], nothing[2];
-    shot shots[BENCH_PRESETS], background;
+    shot shots[BENCH_PRESETS], backgrounds[BENCH_PRESETS];
     uint32_t covered;
 } side;
 
@@ -175,7 +175,6 @@ static bool side_open(const work *w, side *s, const char *backend) {
         if (!settings_make(it, it->presets[p], w->scene.width, &s->shots[p].settings))
             return false;
     }
-    s->background.settings = s->shots[0].settings;
     s->has_floors = strcmp(backend, "vk") != 0 || bench_floors_have_words();
     const lao_module *module =
         s->has_floors ? bench_floors_make(&s->floors, &s->shots[0].settings) : NULL;
@@ -185,10 +184,11 @@ static bool side_open(const work *w, side *s, const char *backend) {
         !lines_make(s->floored, &w->scene, &s->lines[1], &s->nothing[1]))
         return false;
     for (uint32_t p = 0; p < it->preset_count; p++) {
-        if (!shot_make(it, s, &s->shots[p], false))
+        s->backgrounds[p].settings = s->shots[p].settings;
+        if (!shot_make(it, s, &s->shots[p], false) || !shot_make(it, s, &s->backgrounds[p], true))
             return false;
     }
-    return shot_make(it, s, &s->background, true);
+    return true;
 }
 
 static void work_close(work *w) {
@@ -273,13 +273,10 @@ static bool measure(work *w) {
     for (uint32_t round = 0; round < it->frames + BENCH_WARM_UP; round++) {
         for (uint32_t p = 0; p < it->preset_count; p++) {
             for (uint32_t b = 0; b < it->backend_count; b++) {
-                if (!shot_run(w, &w->sides[b], &w->sides[b].shots[p], round))
+                if (!shot_run(w, &w->sides[b], &w->sides[b].shots[p], round) ||
+                    !shot_run(w, &w->sides[b], &w->sides[b].backgrounds[p], round))
                     return false;
             }
-        }
-        for (uint32_t b = 0; b < it->backend_count; b++) {
-            if (!shot_run(w, &w->sides[b], &w->sides[b].background, round))
-                return false;
         }
     }
     return true;
@@ -311,17 +308,36 @@ static const series *pass_find(const shot *it, const char *name) {
     return NULL;
 }
 
-static double pass_median(const shot *it, const char *name) {
-    const series *s = pass_find(it, name);
-    return s ? median(s) : -1;
+/* What a pass costs on a covered pixel and on a background pixel, ns, frame by frame. A frame with
+ * lines costs covered * C + (pixels - covered) * B, one without them pixels * B. */
+typedef struct pixel_cost {
+    series covered, background;
+} pixel_cost;
+
+static pixel_cost cost_of(const side *s, uint32_t preset, const char *pass, uint32_t pixels) {
+    const series *with = pass_find(&s->shots[preset], pass);
+    const series *without = pass_find(&s->backgrounds[preset], pass);
+    pixel_cost cost;
+    cost.covered.count = cost.background.count = 0;
+    for (uint32_t i = 0; with && without && s->covered && i < with->count; i++) {
+        double b = 1e6 * without->values[i] / pixels;
+        double c = (1e6 * with->values[i] - b * (pixels - s->covered)) / s->covered;
+        keep(&cost.background, b);
+        keep(&cost.covered, c);
+    }
+    return cost;
 }
 
-static double nanoseconds(const shot *it, const char *pass, uint32_t pixels) {
-    double time = pass_median(it, pass);
-    return time < 0 || !pixels ? -1 : 1e6 * time / pixels;
+static double median_or_none(const series *s) {
+    return s->count ? median(s) : -1;
 }
 
-static void shot_tell(const shot *it, uint32_t covered, cJSON *out) {
+static void shot_tell(const side *s, uint32_t preset, uint32_t pixels, cJSON *out) {
+    const shot *it = &s->shots[preset];
+    const series *lines = pass_find(it, "lines"), *occlusion = pass_find(it, "occlusion");
+    pixel_cost cost = cost_of(s, preset, "occlusion", pixels);
+    pixel_cost taps = cost_of(s, preset, "floor_taps", pixels);
+    pixel_cost fetches = cost_of(s, preset, "floor_fetches", pixels);
     add_number(out, "first_frame_ms", it->first);
     add_series(out, "frame_ms", &it->frame);
     add_series(out, "pass_sum_ms", &it->sum);
@@ -333,12 +349,18 @@ static void shot_tell(const shot *it, uint32_t covered, cJSON *out) {
         cJSON_AddNumberToObject(row, "level", it->passes[i].level);
         add_series(row, NULL, &it->passes[i].time);
     }
-    const series *lines = pass_find(it, "lines"), *occlusion = pass_find(it, "occlusion");
     add_number(out, "lines_over_floor", quotient(lines, pass_find(it, "floor_lines")));
-    add_number(out, "occlusion_over_floor", quotient(occlusion, pass_find(it, "floor_taps")));
-    add_number(out, "occlusion_over_fetches", quotient(occlusion, pass_find(it, "floor_fetches")));
-    add_number(out, "occlusion_ns_per_covered_pixel", nanoseconds(it, "occlusion", covered));
-    add_number(out, "floor_ns_per_covered_pixel", nanoseconds(it, "floor_taps", covered));
+    add_number(out, "occlusion_over_floor", quotient(&cost.covered, &taps.covered));
+    add_number(out, "occlusion_over_fetches", quotient(&cost.covered, &fetches.covered));
+    add_number(out, "occlusion_pass_over_floor_pass",
+               quotient(occlusion, pass_find(it, "floor_taps")));
+    add_number(out, "occlusion_ns_per_covered_pixel", median_or_none(&cost.covered));
+    add_number(out, "floor_ns_per_covered_pixel", median_or_none(&taps.covered));
+    cJSON *background = cJSON_AddObjectToObject(out, "background");
+    add_series(background, "frame_ms", &s->backgrounds[preset].frame);
+    add_number(background, "occlusion_ns_per_pixel", median_or_none(&cost.background));
+    add_number(background, "floor_ns_per_pixel", median_or_none(&taps.background));
+    add_number(background, "occlusion_over_covered", quotient(&cost.background, &cost.covered));
 }
 
 static const shot *shot_find(const bench_case *it, const side *s, const char *preset) {
@@ -361,19 +383,8 @@ static void side_tell(const bench_case *it, const side *s, cJSON *out) {
     cJSON_AddNumberToObject(out, "covered_pixels", s->covered);
     cJSON *presets = cJSON_AddObjectToObject(out, "presets");
     for (uint32_t p = 0; p < it->preset_count; p++)
-        shot_tell(&s->shots[p], s->covered, cJSON_AddObjectToObject(presets, it->presets[p]));
+        shot_tell(s, p, pixels, cJSON_AddObjectToObject(presets, it->presets[p]));
     add_number(out, "anisotropic_over_classic", preset_quotient(it, s, "default", "classic"));
-    cJSON *background = cJSON_AddObjectToObject(out, "background");
-    add_series(background, "frame_ms", &s->background.frame);
-    add_number(background, "occlusion_ms", pass_median(&s->background, "occlusion"));
-    add_number(background, "occlusion_ns_per_pixel",
-               nanoseconds(&s->background, "occlusion", pixels));
-    add_number(background, "floor_ms", pass_median(&s->background, "floor_taps"));
-    const shot *first = &s->shots[0];
-    add_number(background, "occlusion_over_covered",
-               s->covered ? nanoseconds(&s->background, "occlusion", pixels) /
-                                nanoseconds(first, "occlusion", s->covered)
-                          : -1);
 }
 
 static const char *base_name(const char *path) {

@@ -1,0 +1,57 @@
+#!/usr/bin/env bash
+# Is lineao at least 12 times as fast as VTK 9.1's tubes with vtkSSAOPass on the same lines, in one
+# session, and does it stay below 500 MB?
+#   bench/peer_check.sh path/to/lineao_bench
+# Both draw 30000 lines of 100 points at 1706x1834. PEER_LINES, PEER_VIEW (half the size, WxH),
+# PEER_FRAMES (VTK's) and PEER_LEAST change that. Takes several minutes and 5 GB, VTK's. Without
+# python3-vtk9 and xvfb, which are installed where that is allowed, it says so and passes.
+set -euo pipefail
+bench=${1:?usage: peer_check.sh path/to/lineao_bench}
+here=$(dirname "$(readlink -f "$0")")
+lines=${PEER_LINES:-30000} view=${PEER_VIEW:-853x917} frames=${PEER_FRAMES:-3} least=${PEER_LEAST:-12}
+size=$((${view%x*} * 2))x$((${view#*x} * 2))
+work=$(mktemp -d)
+trap 'rm -rf "$work"' EXIT
+
+skip() {
+  echo "peer_check: skipped: $1"
+  exit 0
+}
+
+have() { /usr/bin/python3 -c 'import vtk' 2>/dev/null && { [ -n "${DISPLAY-}" ] || command -v Xvfb >/dev/null; }; }
+
+install() {
+  local apt=(env DEBIAN_FRONTEND=noninteractive apt-get -qq -o DPkg::Lock::Timeout=300 -o Dpkg::Use-Pty=0)
+  [ "$(id -u)" = 0 ] && command -v apt-get >/dev/null || return 1
+  { "${apt[@]}" update && "${apt[@]}" install -y --no-install-recommends python3-vtk9 xvfb; } >"$work/apt" 2>&1 </dev/null
+}
+
+[ -x /usr/bin/python3 ] || skip "there is no /usr/bin/python3"
+if ! have; then
+  install || skip "the packages python3-vtk9 and xvfb are missing and could not be installed"
+  have || skip "VTK does not load: $(/usr/bin/python3 -c 'import vtk' 2>&1 | tail -n 1)"
+fi
+
+export LIBGL_ALWAYS_SOFTWARE=1
+"$bench" --lines "$lines" --size "$view@2" --export-lines "$work/lines"
+"$bench" --lines "$lines" --size "$view@2" --presets default --json >"$work/lineao.json"
+/usr/bin/python3 "$here/vtk_peer.py" "$work/lines" --size "$size" --frames "$frames" >"$work/vtk.json"
+/usr/bin/python3 - "$work/lineao.json" "$work/vtk.json" "$least" <<'END'
+import json
+import sys
+with open(sys.argv[1]) as file:
+    scene = json.load(file)["scenes"][0]
+with open(sys.argv[2]) as file:
+    peer = json.load(file)
+least, failed = float(sys.argv[3]), False
+print(f"{scene['lines']} lines of 100 points, {scene['width']}x{scene['height']}, median (least) of a frame")
+print(f"{peer['program']}, tubes and vtkSSAOPass: {peer['median_ms']:.0f} ({peer['min_ms']:.0f}) ms, {peer['peak_mb']:.0f} MB")
+for name, side in scene["backends"].items():
+    frame = side["presets"]["default"]["frame_ms"]
+    ratio = peer["median_ms"] / frame["median"]
+    good = ratio >= least and side["peak_mb"] <= 500
+    failed |= not good
+    print(f"lineao {name}: {frame['median']:.0f} ({frame['min']:.0f}) ms, {side['peak_mb']:.0f} MB; VTK takes {ratio:.1f} "
+          f"times as long ({peer['min_ms'] / frame['min']:.1f}){'' if good else f': NOT {least:g} times and 500 MB'}")
+sys.exit(failed)
+END
