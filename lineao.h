@@ -1772,7 +1772,7 @@ static const char *lao__number(const char *text, double *value) {
             exponent = exponent * 10 + (*text - '0');
         }
     }
-    *value = sign * mantissa * pow(10.0, exponent_sign * exponent);
+    *value = sign * mantissa * pow(10.0, (double)(exponent_sign * exponent));
     return digits ? text : NULL;
 }
 

@@ -33,7 +33,7 @@ static const char usage[] =
     "usage: lineao bench [FLAGS]\n"
     "  --json                  one JSON object instead of a table\n"
     "  --backend gl|vk|both    (both)\n"
-    "  --presets NAME,...      (default,classic); memory and background: of the first\n"
+    "  --presets NAME,...      (default,classic); memory: of the first\n"
     "  --lines N,...           lines of 100 points of the scene `bundle` (1000,5000,30000)\n"
     "  --size WxH[@S],...      view size and supersampling (853x917,853x917@2: 853x917 and\n"
     "                          1706x1834 pixels)\n"
@@ -45,10 +45,12 @@ static const char usage[] =
     "Passes are timed with a finish (OpenGL) or timestamps (Vulkan) in the same frames as their\n"
     "floors: floor_lines, the same quads with one flat colour and one target; floor_taps, as many\n"
     "reads as the occlusion has taps (59), of one image, and nothing else; floor_fetches, those\n"
-    "reads of both images of the anisotropic pass. X_over_Y is the median of the quotients of "
-    "each\n"
-    "frame. occlusion_over_covered compares the cost of a background pixel with that of a covered\n"
-    "one. peak_mb is the most memory of a process that only draws the first preset.\n";
+    "reads of both images of the anisotropic pass. X_over_Y is the median of the quotients of\n"
+    "each frame; those of the occlusion compare covered pixels, less what the background costs,\n"
+    "which a frame without lines tells. occlusion_over_covered: the cost of a background pixel "
+    "over\n"
+    "that of a covered one. peak_mb: the most memory of a process that only draws the first "
+    "preset.\n";
 
 static bool parse_number(const char *word, uint32_t most, char stop, uint32_t *out,
                          const char **end) {

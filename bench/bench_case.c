@@ -158,13 +158,20 @@ static bool view_make(const bench_case *it, lao_context *context, uint32_t flags
     return lao_view_create(context, &desc, view) == LAO_OK;
 }
 
-/* Images are kept where floors are timed, so that the mask can be counted afterwards. */
-static bool shot_make(const bench_case *it, side *s, shot *out, bool background) {
-    out->plain_set.lines = background ? s->nothing[0] : s->lines[0];
-    out->floored_set.lines = background ? s->nothing[1] : s->lines[1];
+/* The background is the same views without lines. Images are kept where floors are timed, so that
+ * the mask can be counted afterwards. */
+static bool shot_make(const bench_case *it, side *s, uint32_t preset) {
+    shot *out = &s->shots[preset];
+    out->plain_set.lines = s->lines[0];
+    out->floored_set.lines = s->lines[1];
     out->plain_set.settings = out->floored_set.settings = &out->settings;
-    return view_make(it, s->plain, 0, &out->plain) &&
-           view_make(it, s->floored, LAO_VIEW_KEEP_IMAGES, &out->floored);
+    if (!view_make(it, s->plain, 0, &out->plain) ||
+        !view_make(it, s->floored, LAO_VIEW_KEEP_IMAGES, &out->floored))
+        return false;
+    s->backgrounds[preset] = *out;
+    s->backgrounds[preset].plain_set.lines = s->nothing[0];
+    s->backgrounds[preset].floored_set.lines = s->nothing[1];
+    return true;
 }
 
 static bool side_open(const work *w, side *s, const char *backend) {
@@ -184,8 +191,7 @@ static bool side_open(const work *w, side *s, const char *backend) {
         !lines_make(s->floored, &w->scene, &s->lines[1], &s->nothing[1]))
         return false;
     for (uint32_t p = 0; p < it->preset_count; p++) {
-        s->backgrounds[p].settings = s->shots[p].settings;
-        if (!shot_make(it, s, &s->shots[p], false) || !shot_make(it, s, &s->backgrounds[p], true))
+        if (!shot_make(it, s, p))
             return false;
     }
     return true;
@@ -282,10 +288,15 @@ static bool measure(work *w) {
     return true;
 }
 
-static bool covered_count(side *s) {
+static bool covered_count(const work *w, side *s) {
     const shot *it = &s->shots[0];
+    lao_frame frame = w->frame;
     lao_read_info info;
-    if (lao_read_raw(s->floored, it->floored, "color", 0, NULL, 0, &info) != LAO_OK)
+    double time;
+    frame.view = it->floored;
+    frame.sets = &it->floored_set;
+    if (!bench_device_frame(&s->device, s->floored, &frame, &time) ||
+        lao_read_raw(s->floored, it->floored, "color", 0, NULL, 0, &info) != LAO_OK)
         return false;
     size_t count = (size_t)info.width * info.height;
     uint8_t *texels = malloc(4 * count);
@@ -420,7 +431,7 @@ cJSON *bench_case_run(const bench_case *it) {
         return NULL;
     bool ok = measure(w);
     for (uint32_t b = 0; ok && b < it->backend_count; b++)
-        ok = covered_count(&w->sides[b]);
+        ok = covered_count(w, &w->sides[b]);
     if (ok)
         out = work_tell(w);
     work_close(w);

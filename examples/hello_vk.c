@@ -1,11 +1,8 @@
 /* The smallest Vulkan host: makes lines, lets lineao draw them into an image, writes a picture.
- *
  *     cc -std=c99 -I. examples/hello_vk.c lineao_vk.c -lvulkan -lm -o hello_vk && ./hello_vk
- *
  * The host owns device, queue, commands, images; lineao owns what it makes, and never submits. */
 #define LINEAO_IMPLEMENTATION /* in exactly one file of a program */
 #include "lineao.h"
-
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -14,7 +11,6 @@
 enum { WIDTH = 640, HEIGHT = 480, LINES = 400, POINTS = 160 };
 static float points[LINES * POINTS][3]; /* mm */
 static uint32_t offsets[LINES + 1];     /* line i has points offsets[i] .. offsets[i + 1] - 1 */
-
 enum { SEEN = VK_MEMORY_PROPERTY_HOST_VISIBLE_BIT | VK_MEMORY_PROPERTY_HOST_COHERENT_BIT };
 #define TRY(call) ((call) ? (fprintf(stderr, "hello_vk: %s failed\n", #call), exit(1)) : (void)0)
 #define INFO(Type, TYPE, ...) Vk##Type Type = {VK_STRUCTURE_TYPE_##TYPE, __VA_ARGS__}
@@ -112,8 +108,7 @@ int main(int count, char **arguments) {
         (lao_camera){{1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, -128, 1},
                      {3.0f * HEIGHT / WIDTH, 0, 0, 0, 0, -3, 0, 0, 0, 0, -1.5f, -1, 0, 0, -96, 0},
                      LAO_CAMERA_ZERO_TO_ONE | LAO_CAMERA_FLIP_Y};
-    /* Beside the image lineao wants to know in which state it comes (here undefined, which is zero:
-     * there is nothing to keep) and in which we want it back. It records the barriers itself. */
+    /* The image, with the state in which it comes (zero: undefined) and that in which it goes. */
     frame.target = (lao_image){.present = 1, .width = WIDTH, .height = HEIGHT};
     memcpy(&frame.target.native, &image, sizeof image);
     memcpy(&frame.target.native_view, &view, sizeof view);
@@ -140,10 +135,15 @@ int main(int count, char **arguments) {
     INFO(SubmitInfo, SUBMIT_INFO, .commandBufferCount = 1, .pCommandBuffers = &commands);
     TRY(vkQueueSubmit(queue, 1, &SubmitInfo, VK_NULL_HANDLE) || vkQueueWaitIdle(queue));
     lao_destroy(context); /* with its lines and views, when the device is done with them */
-
     FILE *file = fopen(count > 1 ? arguments[1] : "hello_vk.ppm", "wb");
     TRY(!file || fprintf(file, "P6 %d %d 255\n", WIDTH, HEIGHT) < 0);
     for (size_t i = 0; i < WIDTH * HEIGHT; i++)
         TRY(!fwrite((uint8_t *)pixels + i / WIDTH * rows.rowPitch + i % WIDTH * 4, 3, 1, file));
+    vkDestroyCommandPool(device, pool, NULL);
+    vkDestroyImageView(device, view, NULL);
+    vkDestroyImage(device, image, NULL);
+    vkFreeMemory(device, memory, NULL);
+    vkDestroyDevice(device, NULL);
+    vkDestroyInstance(instance, NULL);
     return fclose(file) != 0;
 }
