@@ -26,7 +26,7 @@
 #include <string.h>
 
 /* ------------------------------------------------------------------------------------ functions */
-/* X(name, source). CORE13 names fall back to their KHR alias; OPTIONAL ones may be missing. */
+/* X(name, source). CORE13 names fall back to their KHR alias; OPTIONAL ones belong to VK_EXT_debug_utils. */
 
 /* clang-format off */
 #define LAO__VK_FUNCTIONS(X)                                                                       \
@@ -488,7 +488,8 @@ static lao_result lao__vk_load(lao__vk *vk) {
         if (rows[i].source == INSTANCE) {
             found = vk->desc.get_instance_proc(vk->desc.instance, rows[i].name);
             memcpy(&function, &found, sizeof function);
-        } else if (vk->call.GetDeviceProcAddr) {
+        } else if (vk->call.GetDeviceProcAddr &&
+                   (rows[i].source != OPTIONAL || vk->desc.debug_utils)) {
             /* A 1.2 device may know the 1.3 names of its driver; they are not for us to call. */
             if (rows[i].source != CORE13 || vk->desc.api_version >= VK_API_VERSION_1_3)
                 function = vk->call.GetDeviceProcAddr(vk->device, rows[i].name);
@@ -1182,7 +1183,8 @@ static lao_result lao__vk_frame_begin(lao__vk *vk, lao__vk_build *build,
     const uint32_t block = vk->host->settings_size;
     const VkDeviceSize first = lao__vk_align(vk, execution->frame_size),
                        next = lao__vk_align(vk, block);
-    const VkDeviceSize total = first + next * execution->set_count;
+    const uint32_t blocks = execution->set_count * vk->host->graph->module_count;
+    const VkDeviceSize total = first + next * blocks;
     lao_result result = LAO_OK;
     uint32_t i;
     if (need.sets > build->set_capacity) {
@@ -1199,7 +1201,7 @@ static lao_result lao__vk_frame_begin(lao__vk *vk, lao__vk_build *build,
     if (result)
         return result;
     memcpy(frame->uniforms.data, execution->frame_uniforms, execution->frame_size);
-    for (i = 0; i < execution->set_count && block; i++)
+    for (i = 0; i < blocks && block; i++)
         memcpy((char *)frame->uniforms.data + first + next * i,
                (const char *)execution->set_uniforms + (size_t)block * i, block);
     return LAO_OK;
@@ -1243,7 +1245,7 @@ static void lao__vk_describe(const lao__vk *vk, const lao__vk_build *build,
     blocks[0].buffer = blocks[1].buffer = frame->uniforms.buffer;
     blocks[0].offset = 0;
     blocks[0].range = first;
-    blocks[1].offset = first + next * step->set;
+    blocks[1].offset = first + next * (step->set * vk->host->graph->module_count + step->module);
     blocks[1].range = next;
     for (i = 0; i <= shader->texture_count; i++) {
         writes[i].sType = VK_STRUCTURE_TYPE_WRITE_DESCRIPTOR_SET;

@@ -42,15 +42,14 @@ static const char usage[] =
     "  --quick                 1000 lines at 214x230, 3 frames, unless told otherwise\n"
     "  --export-lines FILE     only write lines and camera for bench/vtk_peer.py\n"
     "\n"
-    "Passes are timed with a finish (OpenGL) or timestamps (Vulkan) in the same frames as their\n"
+    "Passes are timed with a finish (OpenGL) or timestamps (Vulkan), in the same frames as their\n"
     "floors: floor_lines, the same quads with one flat colour and one target; floor_taps, as many\n"
-    "reads as the occlusion has taps (59), of one image, and nothing else; floor_fetches, those\n"
-    "reads of both images of the anisotropic pass. X_over_Y is the median of the quotients of\n"
-    "each frame; those of the occlusion compare covered pixels, less what the background costs,\n"
-    "which a frame without lines tells. occlusion_over_covered: the cost of a background pixel "
-    "over\n"
-    "that of a covered one. peak_mb: the most memory of a process that only draws the first "
-    "preset.\n";
+    "reads as the occlusion has taps (59), of one image, on every pixel, and nothing else;\n"
+    "floor_fetches, those reads of both images of the anisotropic pass.\n"
+    "X_over_Y: median of the quotients of each frame. occlusion_over_floor, _fetches: by covered\n"
+    "pixel, from least times, less what the background costs, which a frame without lines tells.\n"
+    "occlusion_over_covered: a background pixel's cost over a covered one's. peak_mb: the most\n"
+    "memory of a process that only draws the first preset.\n";
 
 static bool parse_number(const char *word, uint32_t most, char stop, uint32_t *out,
                          const char **end) {

@@ -45,8 +45,7 @@ static void keep(series *s, double value) {
 }
 
 /* The median of a quotient that is taken frame by frame: both numbers of a frame were measured one
- * after the other, so that a busy machine disturbs the quotient little. Frames in which noise hides
- * one of them do not count. Below 0: there is none. */
+ * after the other, so that a busy machine disturbs the quotient little. Below 0: there is none. */
 static double quotient(const series *a, const series *b) {
     series q;
     if (!a || !b || !a->count || a->count != b->count)
@@ -319,36 +318,39 @@ static const series *pass_find(const shot *it, const char *name) {
     return NULL;
 }
 
-/* What a pass costs on a covered pixel and on a background pixel, ns, frame by frame. A frame with
- * lines costs covered * C + (pixels - covered) * B, one without them pixels * B. */
+/* What the occlusion costs on a covered pixel and on a background pixel, ns; below 0: not known. A
+ * frame with lines takes covered * C + (pixels - covered) * B, one without them pixels * B: least
+ * times, because noise grows in the difference. */
 typedef struct pixel_cost {
-    series covered, background;
+    double covered, background;
 } pixel_cost;
 
-static pixel_cost cost_of(const side *s, uint32_t preset, const char *pass, uint32_t pixels) {
-    const series *with = pass_find(&s->shots[preset], pass);
-    const series *without = pass_find(&s->backgrounds[preset], pass);
-    pixel_cost cost;
-    cost.covered.count = cost.background.count = 0;
-    for (uint32_t i = 0; with && without && s->covered && i < with->count; i++) {
-        double b = 1e6 * without->values[i] / pixels;
-        double c = (1e6 * with->values[i] - b * (pixels - s->covered)) / s->covered;
-        keep(&cost.background, b);
-        keep(&cost.covered, c);
-    }
+static pixel_cost occlusion_cost(const side *s, uint32_t preset, uint32_t pixels) {
+    const series *with = pass_find(&s->shots[preset], "occlusion");
+    const series *without = pass_find(&s->backgrounds[preset], "occlusion");
+    pixel_cost cost = {-1, -1};
+    if (!with || !without || !s->covered)
+        return cost;
+    cost.background = 1e6 * least(without) / pixels;
+    cost.covered = (1e6 * least(with) - cost.background * (pixels - s->covered)) / s->covered;
     return cost;
 }
 
-static double median_or_none(const series *s) {
-    return s->count ? median(s) : -1;
+/* A floor of taps costs the same on every pixel. */
+static double floor_cost(const shot *it, const char *pass, uint32_t pixels) {
+    const series *s = pass_find(it, pass);
+    return s ? 1e6 * least(s) / pixels : -1;
+}
+
+static double over(double a, double b) {
+    return a >= 0 && b > 0 ? a / b : -1;
 }
 
 static void shot_tell(const side *s, uint32_t preset, uint32_t pixels, cJSON *out) {
     const shot *it = &s->shots[preset];
-    const series *lines = pass_find(it, "lines"), *occlusion = pass_find(it, "occlusion");
-    pixel_cost cost = cost_of(s, preset, "occlusion", pixels);
-    pixel_cost taps = cost_of(s, preset, "floor_taps", pixels);
-    pixel_cost fetches = cost_of(s, preset, "floor_fetches", pixels);
+    pixel_cost cost = occlusion_cost(s, preset, pixels);
+    double taps = floor_cost(it, "floor_taps", pixels);
+    double fetches = floor_cost(it, "floor_fetches", pixels);
     add_number(out, "first_frame_ms", it->first);
     add_series(out, "frame_ms", &it->frame);
     add_series(out, "pass_sum_ms", &it->sum);
@@ -360,18 +362,18 @@ static void shot_tell(const side *s, uint32_t preset, uint32_t pixels, cJSON *ou
         cJSON_AddNumberToObject(row, "level", it->passes[i].level);
         add_series(row, NULL, &it->passes[i].time);
     }
-    add_number(out, "lines_over_floor", quotient(lines, pass_find(it, "floor_lines")));
-    add_number(out, "occlusion_over_floor", quotient(&cost.covered, &taps.covered));
-    add_number(out, "occlusion_over_fetches", quotient(&cost.covered, &fetches.covered));
+    add_number(out, "lines_over_floor",
+               quotient(pass_find(it, "lines"), pass_find(it, "floor_lines")));
+    add_number(out, "occlusion_over_floor", over(cost.covered, taps));
+    add_number(out, "occlusion_over_fetches", over(cost.covered, fetches));
     add_number(out, "occlusion_pass_over_floor_pass",
-               quotient(occlusion, pass_find(it, "floor_taps")));
-    add_number(out, "occlusion_ns_per_covered_pixel", median_or_none(&cost.covered));
-    add_number(out, "floor_ns_per_covered_pixel", median_or_none(&taps.covered));
+               quotient(pass_find(it, "occlusion"), pass_find(it, "floor_taps")));
+    add_number(out, "occlusion_ns_per_covered_pixel", cost.covered);
+    add_number(out, "floor_ns_per_pixel", taps);
     cJSON *background = cJSON_AddObjectToObject(out, "background");
     add_series(background, "frame_ms", &s->backgrounds[preset].frame);
-    add_number(background, "occlusion_ns_per_pixel", median_or_none(&cost.background));
-    add_number(background, "floor_ns_per_pixel", median_or_none(&taps.background));
-    add_number(background, "occlusion_over_covered", quotient(&cost.background, &cost.covered));
+    add_number(background, "occlusion_ns_per_pixel", cost.background);
+    add_number(background, "occlusion_over_covered", over(cost.background, cost.covered));
 }
 
 static const shot *shot_find(const bench_case *it, const side *s, const char *preset) {

@@ -1,8 +1,8 @@
 /* Floors: passes of a further module that cost what a pass of lineao cannot do without.
  *
  *   floor_lines    the quads of the line pass, by its own vertex stage, one flat colour, one target
- *   floor_taps     32 + 16 + 11 reads of the level depths at literal offsets, summed, nothing else;
- *                  background pixels leave as those of the occlusion pass do
+ *   floor_taps     32 + 16 + 11 reads of the level depths at literal offsets, summed, nothing else,
+ *                  on every pixel: its time over all pixels is what a covered one cannot do without
  *   floor_fetches  the same reads of both images that the anisotropic occlusion pass reads
  *
  * They run in the frame of the passes that they stand beside, so that what disturbs the one

@@ -107,7 +107,7 @@ enum { SIDES = 4 };
 static void print_passes(const cJSON *const *presets, int count) {
     int rows = cJSON_GetArraySize(get(presets[0], "passes"));
     for (int r = 0; r < rows; r++) {
-        const cJSON *cells[SIDES];
+        const cJSON *cells[SIDES] = {NULL};
         const cJSON *first = cJSON_GetArrayItem(get(presets[0], "passes"), r);
         char label[64];
         snprintf(label, sizeof label, "  %s %.0f", text(first, "pass"), number(first, "level"));
@@ -123,7 +123,7 @@ static void print_preset(const char *name, const cJSON *const *presets, int coun
     static const char *const values[] = {"lines_over_floor", "occlusion_over_floor",
                                          "occlusion_over_fetches",
                                          "occlusion_ns_per_covered_pixel"};
-    const cJSON *cells[SIDES];
+    const cJSON *cells[SIDES] = {NULL};
     for (int i = 0; i < count; i++)
         cells[i] = get(presets[i], "frame_ms");
     print_times(name, cells, count);
@@ -139,7 +139,7 @@ static void print_preset(const char *name, const cJSON *const *presets, int coun
 }
 
 static void print_scene(const cJSON *scene) {
-    const cJSON *backends[SIDES], *cells[SIDES], *backend, *preset;
+    const cJSON *backends[SIDES] = {NULL}, *cells[SIDES] = {NULL}, *backend, *preset;
     int count = 0;
     cJSON_ArrayForEach(backend, get(scene, "backends")) {
         if (count < SIDES)

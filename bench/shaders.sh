@@ -64,11 +64,7 @@ LAO_OUT(0, vec4, out_sum)
 #ifdef LAO_FRAGMENT
 void main() {
 ivec2 pixel = LAO_PIXEL;
-vec4 sum = texelFetch(depth0, pixel, 0);
-if (sum.w < 0.5) {
-out_sum = vec4(0.0);
-return;
-}
+vec4 sum = vec4(0.0);
 END
   for i in 0 1 2; do
     level "depth$i" "$i"

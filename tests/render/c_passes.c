@@ -8,8 +8,8 @@
 /* -------------------------------------------------------------------------------------- texels */
 
 static lao_v4 fetch(const render_image *image, int x, int y) {
-    const uint8_t *at = image->data + ((size_t)y * image->width + (size_t)x) *
-                                          lao_format_bytes(image->format);
+    const uint8_t *at =
+        image->data + ((size_t)y * image->width + (size_t)x) * lao_format_bytes(image->format);
     lao_v4 v = {0, 0, 0, 1};
     float *c = &v.x;
     uint16_t half;
@@ -56,8 +56,8 @@ static uint8_t unorm8(float v) {
 }
 
 static void store(render_image *image, int x, int y, lao_v4 v) {
-    uint8_t *at = image->data + ((size_t)y * image->width + (size_t)x) *
-                                    lao_format_bytes(image->format);
+    uint8_t *at =
+        image->data + ((size_t)y * image->width + (size_t)x) * lao_format_bytes(image->format);
     const float *c = &v.x;
     if (image->format == LAO_FORMAT_RGBA8) {
         for (int k = 0; k < 4; k++)
@@ -243,8 +243,8 @@ static lao_v2 sample_weight(const c_inputs *in, const centre *c, const gather *g
     const lao_settings *s = &in->settings;
     const render_image *depths = in->level_depth[level];
     int show = (int)s->show, align = (int)s->align;
-    lao_tap tap = lao_tap_make(g->rows, direction,
-                               lao_v2_make((float)depths->width, (float)depths->height));
+    lao_tap tap =
+        lao_tap_make(g->rows, direction, lao_v2_make((float)depths->width, (float)depths->height));
     float nearer = g->depth - lao_depth_unpack(texel(depths, tap.x, tap.y));
     float difference = nearer * in->frame.host_depth.w;
     float weight = tap.use;

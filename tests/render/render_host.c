@@ -194,8 +194,8 @@ void render_scene(render_lines *lines, const char *name, uint32_t count, double 
     scene_free(&scene);
 }
 
-void render_scatter(render_lines *lines, uint32_t count, uint32_t seed, double length, double extent,
-                    double depth) {
+void render_scatter(render_lines *lines, uint32_t count, uint32_t seed, double length,
+                    double extent, double depth) {
     for (uint32_t i = 0; i < count; i++) {
         double r[5];
         lao_v3 d;
@@ -462,8 +462,8 @@ static void draw(render_device *device, lao_frame *frame) {
     if (device->vk)
         assert_true(host_vk_submit_and_wait(device->vk, commands));
     clock_gettime(CLOCK_MONOTONIC, &end);
-    device->milliseconds = 1e3 * (double)(end.tv_sec - begin.tv_sec) +
-                           1e-6 * (double)(end.tv_nsec - begin.tv_nsec);
+    device->milliseconds =
+        1e3 * (double)(end.tv_sec - begin.tv_sec) + 1e-6 * (double)(end.tv_nsec - begin.tv_nsec);
 }
 
 static lao_lines upload(render_device *device, const render_lines *lines) {
@@ -489,8 +489,8 @@ static void read_all(render_device *device, lao_view view, render_result *result
         image->name = row->name;
         image->level = spy.instances[i].level;
         image->format = row->format;
-        succeeds(device, lao_read_raw(device->context, view, row->name, image->level, NULL, 0,
-                                      &info));
+        succeeds(device,
+                 lao_read_raw(device->context, view, row->name, image->level, NULL, 0, &info));
         image->width = info.width;
         image->height = info.height;
         size = (size_t)info.width * info.height * lao_format_bytes(row->format);
@@ -538,8 +538,7 @@ void render_draw(render_device *device, const render_shot *shot, render_result *
     memcpy(frame.background, shot->background, sizeof frame.background);
     memcpy(frame.sphere, shot->sphere, sizeof frame.sphere);
     if (shot->host_depth) {
-        surface_make(device, &depth, LAO_FORMAT_D32F, shot->width, shot->height,
-                     shot->depth_value);
+        surface_make(device, &depth, LAO_FORMAT_D32F, shot->width, shot->height, shot->depth_value);
         import.image = "host_depth";
         import.source = surface_image(&depth, shot->depth_flags | LAO_HOST_WRITABLE);
         frame.imports = &import;

@@ -52,13 +52,14 @@ void render_line(render_lines *lines);
 void render_scene(render_lines *lines, const char *name, uint32_t count, double scale, double x,
                   double y, double z);
 /* count random straight lines of this length with centres in the box of half size `extent`. */
-void render_scatter(render_lines *lines, uint32_t count, uint32_t seed, double length, double extent,
-                    double depth);
+void render_scatter(render_lines *lines, uint32_t count, uint32_t seed, double length,
+                    double extent, double depth);
 void render_lines_free(render_lines *lines);
 
 /* ---- cameras ---------------------------------------------------------------------------- */
 
-/* Right-handed, clip depth 0 .. 1. The eye looks at the origin from `direction` times `distance`. */
+/* Right-handed, clip depth 0 .. 1. The eye looks at the origin from `direction` times `distance`.
+ */
 lao_camera render_camera(double x, double y, double z, double distance);
 /* Gives it a projection: fovy in degrees, or 0 and the full height in mm. */
 void render_perspective(lao_camera *camera, double fovy, double aspect, double near, double far);
@@ -83,7 +84,7 @@ typedef struct render_shot {
     float target_value;    /* grey and alpha that it holds before */
     int host_depth;        /* non-zero: a depth image of the host, written and read */
     uint32_t depth_flags;
-    float depth_value; /* that it holds before */
+    float depth_value;               /* that it holds before */
     const render_lines *depth_lines; /* (Optional) drawn into the host's depth by a frame before */
 } render_shot;
 
@@ -98,7 +99,7 @@ typedef struct render_image {
 typedef struct render_result {
     render_image images[RENDER_MOST_IMAGES];
     uint32_t count;
-    lao_frame_uniforms frame; /* as the shaders saw it */
+    lao_frame_uniforms frame;                       /* as the shaders saw it */
     render_image target, depth_before, depth_after; /* data NULL: none */
 } render_result;
 

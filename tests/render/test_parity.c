@@ -79,9 +79,9 @@ static void shoot(const char *what, int camera, const char *const *settings) {
     lao_settings chosen;
     memset(&chosen, 0, sizeof chosen);
     for (; *settings; settings += 2)
-        assert_int_equal(lao_setting_parse(module, lao_setting_find(module, settings[0]),
-                                           settings[1], &chosen),
-                         0);
+        assert_int_equal(
+            lao_setting_parse(module, lao_setting_find(module, settings[0]), settings[1], &chosen),
+            0);
     shot.settings[0] = &chosen;
     compare(what, &shot);
 }

@@ -131,8 +131,8 @@ static void test_paper(void **state) {
 }
 
 static void test_author_light(void **state) {
-    static const char *const text[] = {"light", "author", "samples", "12", "supersampling", "1",
-                                       NULL};
+    static const char *const text[] = {"light",         "author", "samples", "12",
+                                       "supersampling", "1",      NULL};
     (void)state;
     shoot(&gl, "author", text);
 }
@@ -145,15 +145,15 @@ static void test_author_gaussian(void **state) {
 }
 
 static void test_gaussian_paper(void **state) {
-    static const char *const text[] = {"preset", "paper", "pyramid", "gaussian", "samples", "9",
-                                       "levels", "4",     NULL};
+    static const char *const text[] = {"preset", "paper",  "pyramid", "gaussian", "samples",
+                                       "9",      "levels", "4",       NULL};
     (void)state;
     shoot(&gl, "gaussian, paper", text);
 }
 
 static void test_strict_zero(void **state) {
-    static const char *const text[] = {"strict_zero", "on", "samples",        "5", "depth_unit",
-                                       "mm",          "light_exponent", "7", NULL};
+    static const char *const text[] = {"strict_zero",    "on", "samples", "5", "depth_unit", "mm",
+                                       "light_exponent", "7",  NULL};
     (void)state;
     shoot(&gl, "strict zero, mm", text);
 }
@@ -165,17 +165,16 @@ static void test_smoothing(void **state) {
 }
 
 static void test_no_occlusion(void **state) {
-    static const char *const text[] = {"occlusion", "off", "shininess", "3", "supersampling", "3",
-                                       NULL};
+    static const char *const text[] = {"occlusion",     "off", "shininess", "3",
+                                       "supersampling", "3",   NULL};
     (void)state;
     shoot(&gl, "no occlusion", text);
 }
 
 static void test_show(void **state) {
     static const char *const shows[] = {
-        "occlusion", "visibility",       "depth",
-        "light",     "alignment",        "visibility_depth",
-        "color",     "visibility_depth_light"};
+        "occlusion", "visibility",       "depth", "light",
+        "alignment", "visibility_depth", "color", "visibility_depth_light"};
     (void)state;
     for (size_t i = 0; i < sizeof shows / sizeof *shows; i++) {
         const char *text[] = {"show", shows[i], "samples", "5", NULL};
@@ -289,12 +288,12 @@ static int teardown(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_default_gl),      cmocka_unit_test(test_default_vk),
-        cmocka_unit_test(test_classic),         cmocka_unit_test(test_paper),
-        cmocka_unit_test(test_author_light),    cmocka_unit_test(test_author_gaussian),
-        cmocka_unit_test(test_gaussian_paper),  cmocka_unit_test(test_strict_zero),
-        cmocka_unit_test(test_smoothing),       cmocka_unit_test(test_no_occlusion),
-        cmocka_unit_test(test_show),            cmocka_unit_test(test_present),
+        cmocka_unit_test(test_default_gl),     cmocka_unit_test(test_default_vk),
+        cmocka_unit_test(test_classic),        cmocka_unit_test(test_paper),
+        cmocka_unit_test(test_author_light),   cmocka_unit_test(test_author_gaussian),
+        cmocka_unit_test(test_gaussian_paper), cmocka_unit_test(test_strict_zero),
+        cmocka_unit_test(test_smoothing),      cmocka_unit_test(test_no_occlusion),
+        cmocka_unit_test(test_show),           cmocka_unit_test(test_present),
         cmocka_unit_test(test_host_depth),
     };
     return cmocka_run_group_tests(tests, setup, teardown);

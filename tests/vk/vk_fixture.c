@@ -64,6 +64,7 @@ lao_result fixture_context(fixture *f, int queue, lao_context **context) {
     vk.physical_device = host_vk_physical(f->host);
     vk.device = host_vk_device(f->host);
     vk.get_instance_proc = vk_wrap_proc;
+    vk.debug_utils = 1; /* the host enables it with the validation layer */
     vk.api_version = host_vk_api_version(f->host);
     vk.queue_family = host_vk_family(f->host);
     vk.queue = queue ? host_vk_queue(f->host) : NULL;
