@@ -9,7 +9,7 @@ LC_ALL=C
 export LC_ALL
 cd "$(dirname "$0")"
 
-SHADERS="fullscreen import_depth export_depth lines level_zero level_up occlusion smooth_x smooth_y shade resolve present"
+SHADERS="fullscreen import_depth export_depth cover lines level_zero level_up occlusion smooth_x smooth_y shade resolve present"
 HEADERS="lineao.h" # modules follow: sdfvessel.h vesselsurface.h flow4d.h
 
 work=$(mktemp -d)

@@ -227,7 +227,13 @@ typedef enum lao_repeat {
 } lao_repeat;
 typedef enum lao_scope { LAO_SCOPE_FRAME, LAO_SCOPE_PER_SET /* consecutive rows replay for each set */ } lao_scope;
 typedef enum lao_blend { LAO_BLEND_NONE, LAO_BLEND_OVER /* premultiplied */, LAO_BLEND_ADD } lao_blend;
-typedef enum lao_depth_test { LAO_DEPTH_NONE, LAO_DEPTH_NEARER, LAO_DEPTH_ALWAYS } lao_depth_test;
+typedef enum lao_depth_test {
+    LAO_DEPTH_NONE,
+    LAO_DEPTH_NEARER,
+    LAO_DEPTH_ALWAYS,
+    LAO_DEPTH_COVERED /* full-screen: only where the depth image holds something; writes no depth. Skips background before
+                         the shader, which on llvmpipe an early return does not */
+} lao_depth_test;
 
 #define LAO_MAX_READS 28
 #define LAO_MAX_WRITES 6
@@ -1508,6 +1514,9 @@ static const lao_pass_row lao__passes[] = {
     /* G-buffer: colour and mask, tangent and zoom, linear depth (METHODS 1.1) */
     {"lines", LAO_PASS_DRAW_LINES, "lines", LAO_SCOPE_PER_SET, LAO_REPEAT_NONE, NULL, LAO_BLEND_NONE, LAO_DEPTH_NEARER, LAO__ALWAYS,
      {LAO__CLEAR("color"), LAO__CLEAR("tangent"), LAO__CLEAR("depth"), LAO__KEEP("zbuffer")}, {LAO__READ("#points"), LAO__READ("#colors")}},
+    /* the host's G-buffer instead of our lines: its mask as depth, for the passes that skip background by it */
+    {"cover", LAO_PASS_FULLSCREEN, "cover", LAO_SCOPE_PER_SET, LAO_REPEAT_NONE, NULL, LAO_BLEND_NONE, LAO_DEPTH_ALWAYS, {{"@color", '>', 0}},
+     {LAO__CLEAR("zbuffer")}, {LAO__READ("color")}},
     /* level 0 of what a sample reads, and the sums that coarser levels are made of */
     {"level_zero", LAO_PASS_FULLSCREEN, "level_zero", LAO_SCOPE_PER_SET, LAO_REPEAT_NONE, NULL, LAO_BLEND_NONE, LAO_DEPTH_NONE, {{"occlusion", '=', 1}},
      {LAO__WRITE("tensor"), LAO__WRITE("level_depth"), LAO__WRITE("level_axial"), LAO__WRITE("level_tangent")},
@@ -1515,16 +1524,16 @@ static const lao_pass_row lao__passes[] = {
     {"level_up", LAO_PASS_FULLSCREEN, "level_up", LAO_SCOPE_PER_SET, LAO_REPEAT_LEVELS_UP, NULL, LAO_BLEND_NONE, LAO_DEPTH_NONE, {{"occlusion", '=', 1}},
      {LAO__WRITE("tensor"), LAO__WRITE("level_depth"), LAO__WRITE("level_axial"), LAO__WRITE("level_tangent")},
      {LAO__READ_FINER("tensor"), LAO__READ_FINER("level_tangent")}},
-    {"occlusion", LAO_PASS_FULLSCREEN, "occlusion", LAO_SCOPE_PER_SET, LAO_REPEAT_NONE, NULL, LAO_BLEND_NONE, LAO_DEPTH_NONE, {{"occlusion", '=', 1}},
-     {LAO__WRITE("ao")},
+    {"occlusion", LAO_PASS_FULLSCREEN, "occlusion", LAO_SCOPE_PER_SET, LAO_REPEAT_NONE, NULL, LAO_BLEND_NONE, LAO_DEPTH_COVERED, {{"occlusion", '=', 1}},
+     {LAO__CLEAR("ao"), LAO__KEEP("zbuffer")},
      {LAO__READ("tangent"), LAO__READ_ALL("level_depth"), LAO__READ_ALL("level_axial"), LAO__READ_ALL("level_tangent")}},
     /* for debugging only: shadows leak into what is not shadowed (Koehler 2017, 4.4) */
     {"smooth_x", LAO_PASS_FULLSCREEN, "smooth_x", LAO_SCOPE_PER_SET, LAO_REPEAT_COUNT, "smoothing", LAO_BLEND_NONE, LAO_DEPTH_NONE, {{"occlusion", '=', 1}},
      {LAO__OTHER("ao")}, {LAO__READ("ao"), LAO__READ("color")}},
     {"smooth_y", LAO_PASS_FULLSCREEN, "smooth_y", LAO_SCOPE_PER_SET, LAO_REPEAT_COUNT, "smoothing", LAO_BLEND_NONE, LAO_DEPTH_NONE, {{"occlusion", '=', 1}},
      {LAO__OTHER("ao")}, {LAO__READ("ao"), LAO__READ("color")}},
-    {"shade", LAO_PASS_FULLSCREEN, "shade", LAO_SCOPE_PER_SET, LAO_REPEAT_NONE, NULL, LAO_BLEND_NONE, LAO_DEPTH_NONE, LAO__ALWAYS,
-     {LAO__KEEP("shaded")}, {LAO__READ("color"), LAO__READ("tangent"), LAO__READ("ao")}},
+    {"shade", LAO_PASS_FULLSCREEN, "shade", LAO_SCOPE_PER_SET, LAO_REPEAT_NONE, NULL, LAO_BLEND_NONE, LAO_DEPTH_COVERED, LAO__ALWAYS,
+     {LAO__KEEP("shaded"), LAO__KEEP("zbuffer")}, {LAO__READ("color"), LAO__READ("tangent"), LAO__READ("ao")}},
     /* box filter over the samples of a pixel, and the background */
     {"resolve", LAO_PASS_FULLSCREEN, "resolve", LAO_SCOPE_FRAME, LAO_REPEAT_NONE, NULL, LAO_BLEND_NONE, LAO_DEPTH_NONE, LAO__ALWAYS,
      {LAO__WRITE("out")}, {LAO__READ("shaded")}},

@@ -1395,8 +1395,10 @@ static void lao__gl_clear(const lao__gl *gl, const lao_plan_step *step) {
     for (i = 0; i < step->color_count; i++)
         if (step->colors[i].instance != LAO_NO_INDEX && step->colors[i].clear == 1)
             gl->ClearBufferfv(LAO__GL_COLOR, (lao__gl_int)i, step->colors[i].value);
-    if (step->depth.instance != LAO_NO_INDEX && step->depth.clear == 1)
+    if (step->depth.instance != LAO_NO_INDEX && step->depth.clear == 1) {
+        gl->DepthMask(1); /* clears obey it */
         gl->ClearBufferfv(LAO__GL_DEPTH, 0, step->depth.value);
+    }
 }
 
 static void lao__gl_set_tests(const lao__gl *gl, const lao_plan *plan, const lao_plan_step *step) {
@@ -1413,8 +1415,11 @@ static void lao__gl_set_tests(const lao__gl *gl, const lao_plan *plan, const lao
     }
     lao__gl_toggle(gl, LAO__GL_DEPTH_TEST,
                    depth != LAO_DEPTH_NONE && step->depth.instance != LAO_NO_INDEX);
+    gl->DepthMask(depth != LAO_DEPTH_COVERED);
     if (depth == LAO_DEPTH_NEARER)
         gl->DepthFunc(plan->reverse_depth ? LAO__GL_GREATER : LAO__GL_LESS);
+    else if (depth == LAO_DEPTH_COVERED)
+        gl->DepthFunc(plan->reverse_depth ? LAO__GL_LESS : LAO__GL_GREATER);
     else
         gl->DepthFunc(LAO__GL_ALWAYS);
 }

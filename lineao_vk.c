@@ -125,6 +125,7 @@ typedef struct lao__vk_program {
 typedef struct lao__vk_key {
     uint32_t shader, blend;
     uint32_t depth_compare; /* VkCompareOp; NEVER: neither test nor write */
+    uint32_t depth_read_only;
     uint32_t depth_format, color_count;
     uint32_t color_formats[LAO_MAX_WRITES];
     int32_t constants[LAO_MAX_CONSTANTS];
@@ -828,6 +829,10 @@ static int lao__vk_key_make(const lao_plan *plan, const lao_plan_step *step,
         key->depth_compare = VK_COMPARE_OP_ALWAYS;
     if (step->depth.instance != LAO_NO_INDEX && step->row->depth == LAO_DEPTH_NEARER)
         key->depth_compare = plan->reverse_depth ? VK_COMPARE_OP_GREATER : VK_COMPARE_OP_LESS;
+    if (step->depth.instance != LAO_NO_INDEX && step->row->depth == LAO_DEPTH_COVERED) {
+        key->depth_compare = plan->reverse_depth ? VK_COMPARE_OP_LESS : VK_COMPARE_OP_GREATER;
+        key->depth_read_only = 1;
+    }
     return known;
 }
 
@@ -880,7 +885,8 @@ static lao_result lao__vk_pipeline_compile(lao__vk *vk, const lao__vk_key *key,
     raster.lineWidth = 1;
     samples.rasterizationSamples = VK_SAMPLE_COUNT_1_BIT;
     depth.depthCompareOp = (VkCompareOp)key->depth_compare;
-    depth.depthTestEnable = depth.depthWriteEnable = key->depth_compare != VK_COMPARE_OP_NEVER;
+    depth.depthTestEnable = key->depth_compare != VK_COMPARE_OP_NEVER;
+    depth.depthWriteEnable = depth.depthTestEnable && !key->depth_read_only;
     blend.attachmentCount = rendering.colorAttachmentCount = key->color_count;
     blend.pAttachments = blends;
     dynamic.dynamicStateCount = 2;

@@ -67,6 +67,7 @@ static int open_context(render_device *device, lao_backend *backend) {
         return 1;
     print_message("%s: %s\n", device->name, device->log);
     render_close(device);
+    device->refused = 1;
     return 0;
 }
 
@@ -138,6 +139,8 @@ void render_close(render_device *device) {
 void render_need(const render_device *device) {
     if (device->context)
         return;
+    if (device->refused)
+        fail_msg("lao_create failed");
     if (getenv("LINEAO_EXPECT_GPU"))
         fail_msg("LINEAO_EXPECT_GPU is set");
     skip();

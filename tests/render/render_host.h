@@ -23,6 +23,7 @@ typedef struct render_device {
     host_vk *vk;
     lao_context *context;
     int software;        /* Mesa's llvmpipe, for which the bounds are exact */
+    int refused;         /* there is a device, but no context came of it: a failure */
     char log[1024];      /* of the last failure */
     double milliseconds; /* of the last frame, compilation and all */
 } render_device;
@@ -33,7 +34,7 @@ int render_open_gl(render_device *device, void *(*get_proc)(const char *name, vo
 int render_open_vk(render_device *device, uint32_t api_version);
 /* Views are kept until here, so that no shader is compiled twice. Fine on a closed one. */
 void render_close(render_device *device);
-/* Skips the test, or fails it where LINEAO_EXPECT_GPU is set, unless the device is open. */
+/* Unless the device is open: skips the test, or fails it where LINEAO_EXPECT_GPU is set. */
 void render_need(const render_device *device);
 
 /* ---- line sets -------------------------------------------------------------------------- */

@@ -391,6 +391,52 @@ static void test_nothing_in_front(void **state) {
     }
 }
 
+/* A coarse texel is the mean of the covered texels of the finest level below it, no matter how few,
+ * and far and invalid where there are none. */
+static void test_levels_mask(void **state) {
+    lao_settings settings = plain(LAO_ALIGN_ROTATION);
+    render_shot shot;
+    render_result result;
+    const render_image *color, *depth;
+    uint32_t partly = 0;
+    (void)state;
+    render_need(&gl);
+    memset(&shot, 0, sizeof shot);
+    shot.width = shot.height = SIZE - 1; /* the last texels hang over */
+    shot.camera = orthographic(100);
+    shot.lines[0] = &tangle;
+    shot.settings[0] = &settings;
+    shot.set_count = 1;
+    render_draw(&gl, &shot, &result);
+    color = render_find(&result, "color", 0);
+    depth = render_find(&result, "depth", 0);
+    for (uint32_t level = 0; level < 3; level++) {
+        const render_image *coarse = render_find(&result, "level_depth", level);
+        uint32_t side = 1u << level;
+        for (uint32_t i = 0; i < coarse->width * coarse->height; i++) {
+            uint32_t x0 = i % coarse->width * side, y0 = i / coarse->width * side, count = 0;
+            const uint8_t *texel = coarse->data + 4 * (size_t)i;
+            double sum = 0, stored = (65536.0 * texel[0] + 256.0 * texel[1] + texel[2]) / 16777215;
+            for (uint32_t y = y0; y < y0 + side && y < depth->height; y++) {
+                for (uint32_t x = x0; x < x0 + side && x < depth->width; x++) {
+                    size_t at = (size_t)y * depth->width + x;
+                    float d;
+                    memcpy(&d, depth->data + 4 * at, sizeof d);
+                    if (color->data[4 * at + 3] != 0) {
+                        sum += (double)d;
+                        count++;
+                    }
+                }
+            }
+            assert_int_equal(texel[3], count > 0 ? 255 : 0);
+            assert_true(fabs(stored - (count > 0 ? sum / count : 1)) < 1e-6);
+            partly += count > 0 && count < side * side;
+        }
+    }
+    assert_true(partly > 100);
+    render_free(&result);
+}
+
 /* A sheet behind another is dark beside it up to its own edge: the far background that the coarse
  * levels' texels there contain does not count. */
 static void test_silhouettes(void **state) {
@@ -413,7 +459,7 @@ static void test_silhouettes(void **state) {
     }
     print_message("silhouette %g, middle %g\n", edge, middle);
     assert_true(middle > 0.05);
-    assert_true(edge > 0.6 * middle);
+    assert_true(edge > 0.6 * middle && edge < 1.4 * middle);
     picture_free(&p);
     render_lines_free(&lines);
 }
@@ -501,6 +547,7 @@ int main(void) {
         cmocka_unit_test(test_monotone),
         cmocka_unit_test(test_resolution),
         cmocka_unit_test(test_nothing_in_front),
+        cmocka_unit_test(test_levels_mask),
         cmocka_unit_test(test_silhouettes),
         cmocka_unit_test(test_printed_sum),
         cmocka_unit_test(test_factors_multiply),
