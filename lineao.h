@@ -1215,7 +1215,7 @@ typedef struct lao_line_end lao_line_end;
 #endif
 /* e: direction of view at the end point; own, other: the segment's and its neighbour's vector in the line's direction
    (other = 0: no neighbour); outward: +1 at the segment's end, -1 at its start. Turns up to 90 degrees as seen share
-   mitred corners; sharper ones, and mitres longer than a segment, end square, half a width beyond the joint, so that the
+   mitred corners; sharper ones, and mitres longer than half a segment, end square, half a width beyond the joint, so that the
    two ends cover the wedge between them. */
 LAO_FN lao_line_end lao_line_join(lao_v3 e, lao_v3 own, lao_v3 other, float half_width, float outward) {
     lao_line_end end;
@@ -1238,7 +1238,7 @@ LAO_FN lao_line_end lao_line_join(lao_v3 e, lao_v3 own, lao_v3 other, float half
         LAO_EXACT float c = lao_v3_dot(o, n);
         LAO_EXACT float reach2 = half_width * half_width * (1.0f - c) / lao_max(1.0f + c, 1.0e-6f);
         LAO_EXACT float shorter = lao_min(own_length2 * lao_v3_dot(own, own), other_length2 * lao_v3_dot(other, other));
-        if (c >= 0.5f || (c >= 0.0f && reach2 <= shorter)) {
+        if (own_length2 >= 1.0e-12f && (c >= 0.87f || (c >= 0.0f && 4.0f * reach2 <= shorter))) {
             LAO_EXACT float s = half_width / (1.0f + c);
             end.across = lao_v3_scale(lao_v3_add(o, n), s);
             end.tangent = lao_v3_unit(lao_v3_add(own, other), end.tangent);
