@@ -1,17 +1,17 @@
-/* lineao.h - dense 3D line sets with line ambient occlusion, for OpenGL and Vulkan hosts. MIT licence, see LICENSE.
+/* lineao.h - dense 3D line sets with line ambient occlusion, for OpenGL and Vulkan hosts. MIT
+   licence, see LICENSE.
 
-   A rendering core that a host drops in as files. It draws brain-fibre tractograms, pathlines and other streamlines as
-   view-aligned ribbons whose depth and structure can be read at a glance: LineAO (Eichelbaum 2013) and anisotropic
-   LineAO (Koehler 2017). The frame graph is data: tables of passes, images and settings that a backend executes.
+   A rendering core that a host drops in as files. It draws brain-fibre tractograms, pathlines and
+   other streamlines as view-aligned ribbons whose depth and structure can be read at a glance:
+   LineAO (Eichelbaum 2013) and anisotropic LineAO (Koehler 2017). The frame graph is data: tables
+   of passes, images and settings that a backend executes.
 
    EXAMPLE (OpenGL; for Vulkan only the three backend lines differ)
        #define LINEAO_IMPLEMENTATION       // in exactly one C or C++ file
        #include "lineao.h"                 // and compile lineao_gl.c (lineao_vk.c) beside it
 
-       lao_gl_desc gl = {0};               // the host's context is current; functions come from its loader
-       gl.get_proc = my_get_proc;
-       lao_desc desc = {0};
-       lao_gl_backend(&gl, &desc.backend);
+       lao_gl_desc gl = {0};               // the host's context is current; functions come from its
+   loader gl.get_proc = my_get_proc; lao_desc desc = {0}; lao_gl_backend(&gl, &desc.backend);
        lao_context *context;
        if (lao_create(&desc, &context) != LAO_OK) return 1;
        lao_lines_desc set = {0};           // points in millimetres, offsets[line_count + 1]
@@ -29,10 +29,11 @@
        frame.target = my_target;           // a lao_image: the host's framebuffer, texture or image
        lao_render(context, &frame);
 
-   DOES NOT open windows, create devices, contexts, queues or threads, submit or wait, read files, print, abort, keep
-   global state or link to a GL or Vulkan library.
+   DOES NOT open windows, create devices, contexts, queues or threads, submit or wait, read files,
+   print, abort, keep global state or link to a GL or Vulkan library.
 
-   FILES  OpenGL host: lineao.h lineao_shaders.h lineao_gl.c. Vulkan host: lineao.h lineao_shaders.h lineao_vk.c.
+   FILES  OpenGL host: lineao.h lineao_shaders.h lineao_gl.c. Vulkan host: lineao.h lineao_shaders.h
+   lineao_vk.c.
 
    CONFIGURATION (define before including)
        LINEAO_IMPLEMENTATION   the function bodies, in one translation unit
@@ -41,12 +42,13 @@
 
    CONTRACTS
        Units     millimetres, milliseconds, radians. Larger depth is farther.
-       Images    row 0 of every image of the graph is the bottom of the picture; one flip, in the copy to the host's image.
-       Threads   a context is used by one thread at a time; contexts are independent; functions without a context are pure.
-       Memory    every CPU byte comes from lao_desc.allocator. lao_render allocates nothing once a view has drawn a frame
-                 of the same structure (size, structural settings, imports, number of sets).
-       Errors    a failure returns one lao_result, logs one item and leaves out-parameters untouched.
-       Versions  source compatibility within a major version: new fields come at the end and zero keeps the old behaviour. */
+       Images    row 0 of every image of the graph is the bottom of the picture; one flip, in the
+   copy to the host's image. Threads   a context is used by one thread at a time; contexts are
+   independent; functions without a context are pure. Memory    every CPU byte comes from
+   lao_desc.allocator. lao_render allocates nothing once a view has drawn a frame of the same
+   structure (size, structural settings, imports, number of sets). Errors    a failure returns one
+   lao_result, logs one item and leaves out-parameters untouched. Versions  source compatibility
+   within a major version: new fields come at the end and zero keeps the old behaviour. */
 #ifndef LINEAO_H
 #define LINEAO_H
 
@@ -64,7 +66,8 @@
 extern "C" {
 #endif
 
-/* ------------------------------------------------------------------------------------------------ results and hooks */
+/* ------------------------------------------------------------------------------------------------
+ * results and hooks */
 
 typedef enum lao_result {
     LAO_OK = 0,
@@ -84,37 +87,46 @@ typedef enum lao_result {
 LAO_API const char *lao_result_text(lao_result result);
 
 /* One row per thing that can go wrong: X(id, result, text). Each failure logs exactly one. */
-#define LAO_LOG_ITEMS(X)                                                                                               \
-    X(NULL_ARGUMENT, LAO_ERROR_INVALID_ARGUMENT, "a required pointer is NULL")                                         \
-    X(BACKEND_MISSING, LAO_ERROR_INVALID_ARGUMENT, "lao_desc.backend was not filled by a lao_*_backend function")      \
-    X(BACKEND_ABI, LAO_ERROR_INVALID_ARGUMENT, "the backend was built against another version of lineao.h")            \
-    X(CONTEXT_MEMORY, LAO_ERROR_OUT_OF_MEMORY, "no memory for the context")                                            \
-    X(GRAPH_BROKEN, LAO_ERROR_GRAPH, "the tables of passes, images and settings contradict each other")                \
-    X(LINES_OFFSETS, LAO_ERROR_INVALID_ARGUMENT, "offsets must start at 0, never fall and end at point_count")         \
-    X(LINES_COUNT, LAO_ERROR_INVALID_ARGUMENT, "too many points for 32-bit indices")                                   \
-    X(LINES_MEMORY, LAO_ERROR_OUT_OF_MEMORY, "no memory for the line set")                                             \
-    X(LINES_HANDLE, LAO_ERROR_STALE_HANDLE, "the lao_lines handle is not alive")                                       \
-    X(VIEW_SIZE, LAO_ERROR_INVALID_ARGUMENT, "the view's size is zero or, times supersampling, above the device limit") \
-    X(VIEW_MEMORY, LAO_ERROR_OUT_OF_MEMORY, "no memory for the view")                                                  \
-    X(VIEW_HANDLE, LAO_ERROR_STALE_HANDLE, "the lao_view handle is not alive")                                         \
-    X(PLAN_MEMORY, LAO_ERROR_OUT_OF_MEMORY, "no memory for the plan")                                                  \
-    X(CAMERA, LAO_ERROR_INVALID_ARGUMENT, "a camera matrix is singular, not finite or not a projection")               \
-    X(SETTING_RANGE, LAO_ERROR_INVALID_ARGUMENT, "a setting is outside its range")                                     \
-    X(IMPORT, LAO_ERROR_INVALID_ARGUMENT, "an imported image is not part of the graph or has the wrong size")          \
-    X(TARGET, LAO_ERROR_INVALID_ARGUMENT, "the target's size differs from the view's")                                           \
-    X(FRAME_MEMORY, LAO_ERROR_OUT_OF_MEMORY, "no memory for the frame")                                                \
-    X(IMAGE_UNKNOWN, LAO_ERROR_INVALID_ARGUMENT, "no image of that name and level in the plan of this view")           \
-    X(READ_SIZE, LAO_ERROR_INVALID_ARGUMENT, "the buffer is too small for the image")                                  \
-    X(NOTHING_RENDERED, LAO_ERROR_NOT_READY, "the view has not been rendered yet")                                     \
-    X(TIMINGS_OFF, LAO_ERROR_NOT_READY, "the last frame of the view was rendered without LAO_FRAME_TIMINGS")           \
-    X(UNITS, LAO_ERROR_UNSUPPORTED, "a pass reads more textures than the device has units")                            \
-    X(BACKEND_FUNCTION, LAO_ERROR_UNSUPPORTED, "a function of the graphics library is missing")                        \
-    X(BACKEND_FEATURE, LAO_ERROR_UNSUPPORTED, "the device lacks a required feature or format")                         \
-    X(BACKEND_MEMORY, LAO_ERROR_OUT_OF_MEMORY, "no memory inside the backend")                                         \
-    X(DEVICE_MEMORY, LAO_ERROR_OUT_OF_DEVICE_MEMORY, "no device memory")                                               \
-    X(SHADER_COMPILE, LAO_ERROR_SHADER, "a shader was refused")                                                        \
-    X(BACKEND_CALL, LAO_ERROR_BACKEND, "a call of the graphics library failed")                                        \
-    X(BACKEND_STATE, LAO_ERROR_INVALID_ARGUMENT, "the host's state forbids the call")                                  \
+#define LAO_LOG_ITEMS(X)                                                                           \
+    X(NULL_ARGUMENT, LAO_ERROR_INVALID_ARGUMENT, "a required pointer is NULL")                     \
+    X(BACKEND_MISSING, LAO_ERROR_INVALID_ARGUMENT,                                                 \
+      "lao_desc.backend was not filled by a lao_*_backend function")                               \
+    X(BACKEND_ABI, LAO_ERROR_INVALID_ARGUMENT,                                                     \
+      "the backend was built against another version of lineao.h")                                 \
+    X(CONTEXT_MEMORY, LAO_ERROR_OUT_OF_MEMORY, "no memory for the context")                        \
+    X(GRAPH_BROKEN, LAO_ERROR_GRAPH,                                                               \
+      "the tables of passes, images and settings contradict each other")                           \
+    X(LINES_OFFSETS, LAO_ERROR_INVALID_ARGUMENT,                                                   \
+      "offsets must start at 0, never fall and end at point_count")                                \
+    X(LINES_COUNT, LAO_ERROR_INVALID_ARGUMENT, "too many points for 32-bit indices")               \
+    X(LINES_MEMORY, LAO_ERROR_OUT_OF_MEMORY, "no memory for the line set")                         \
+    X(LINES_HANDLE, LAO_ERROR_STALE_HANDLE, "the lao_lines handle is not alive")                   \
+    X(VIEW_SIZE, LAO_ERROR_INVALID_ARGUMENT,                                                       \
+      "the view's size is zero or, times supersampling, above the device limit")                   \
+    X(VIEW_MEMORY, LAO_ERROR_OUT_OF_MEMORY, "no memory for the view")                              \
+    X(VIEW_HANDLE, LAO_ERROR_STALE_HANDLE, "the lao_view handle is not alive")                     \
+    X(PLAN_MEMORY, LAO_ERROR_OUT_OF_MEMORY, "no memory for the plan")                              \
+    X(CAMERA, LAO_ERROR_INVALID_ARGUMENT,                                                          \
+      "a camera matrix is singular, not finite or not a projection")                               \
+    X(SETTING_RANGE, LAO_ERROR_INVALID_ARGUMENT, "a setting is outside its range")                 \
+    X(IMPORT, LAO_ERROR_INVALID_ARGUMENT,                                                          \
+      "an imported image is not part of the graph or has the wrong size")                          \
+    X(TARGET, LAO_ERROR_INVALID_ARGUMENT, "the target's size differs from the view's")             \
+    X(FRAME_MEMORY, LAO_ERROR_OUT_OF_MEMORY, "no memory for the frame")                            \
+    X(IMAGE_UNKNOWN, LAO_ERROR_INVALID_ARGUMENT,                                                   \
+      "no image of that name and level in the plan of this view")                                  \
+    X(READ_SIZE, LAO_ERROR_INVALID_ARGUMENT, "the buffer is too small for the image")              \
+    X(NOTHING_RENDERED, LAO_ERROR_NOT_READY, "the view has not been rendered yet")                 \
+    X(TIMINGS_OFF, LAO_ERROR_NOT_READY,                                                            \
+      "the last frame of the view was rendered without LAO_FRAME_TIMINGS")                         \
+    X(UNITS, LAO_ERROR_UNSUPPORTED, "a pass reads more textures than the device has units")        \
+    X(BACKEND_FUNCTION, LAO_ERROR_UNSUPPORTED, "a function of the graphics library is missing")    \
+    X(BACKEND_FEATURE, LAO_ERROR_UNSUPPORTED, "the device lacks a required feature or format")     \
+    X(BACKEND_MEMORY, LAO_ERROR_OUT_OF_MEMORY, "no memory inside the backend")                     \
+    X(DEVICE_MEMORY, LAO_ERROR_OUT_OF_DEVICE_MEMORY, "no device memory")                           \
+    X(SHADER_COMPILE, LAO_ERROR_SHADER, "a shader was refused")                                    \
+    X(BACKEND_CALL, LAO_ERROR_BACKEND, "a call of the graphics library failed")                    \
+    X(BACKEND_STATE, LAO_ERROR_INVALID_ARGUMENT, "the host's state forbids the call")              \
     X(DEVICE_LOST, LAO_ERROR_DEVICE_LOST, "the device is lost")
 
 typedef enum lao_log_item {
@@ -124,9 +136,11 @@ typedef enum lao_log_item {
         LAO_LOG_ITEM_COUNT
 } lao_log_item;
 
-/* Receives one call per failure. `text` ends with what is special to the case (a name, a number); valid during the call. */
+/* Receives one call per failure. `text` ends with what is special to the case (a name, a number);
+ * valid during the call. */
 typedef struct lao_logger {
-    void (*log)(void *user, lao_log_item item, lao_result result, const char *text); /* NULL: silent */
+    void (*log)(void *user, lao_log_item item, lao_result result,
+                const char *text); /* NULL: silent */
     void *user;
 } lao_logger;
 
@@ -137,16 +151,18 @@ typedef struct lao_allocator {
     void *user;
 } lao_allocator;
 
-/* Runs `fn(arg, index)` for every index in [0, count), on as many threads as the host likes. All zero: serial. Chunks are
-   fixed by the caller, so results do not depend on threads. `progress` (Optional) returns non-zero to cancel. */
+/* Runs `fn(arg, index)` for every index in [0, count), on as many threads as the host likes. All
+   zero: serial. Chunks are fixed by the caller, so results do not depend on threads. `progress`
+   (Optional) returns non-zero to cancel. */
 typedef struct lao_job {
     void (*run)(void *user, uint32_t count, void (*fn)(void *arg, uint32_t index), void *arg);
     int (*progress)(void *user, uint64_t done, uint64_t total);
     void *user;
 } lao_job;
 
-/* ------------------------------------------------------------------------------------------------------------ tables
-   One array per concept and module; names tie them together. A new effect is a row here and a file in shaders/. */
+/* ------------------------------------------------------------------------------------------------------------
+   tables One array per concept and module; names tie them together. A new effect is a row here and
+   a file in shaders/. */
 
 typedef enum lao_format {
     LAO_FORMAT_NONE = 0,
@@ -176,9 +192,13 @@ typedef enum lao_encoding {
     LAO_ENCODING_SIGNED8  /* RGBA8: 2 v - 1; three channels in [-1, 1] */
 } lao_encoding;
 
-enum { LAO_IMAGE_IMPORT = 1 /* only ever given by the host */, LAO_IMAGE_HISTORY = 2 /* last frame's content is kept */ };
+enum {
+    LAO_IMAGE_IMPORT = 1 /* only ever given by the host */,
+    LAO_IMAGE_HISTORY = 2 /* last frame's content is kept */
+};
 
-/* A condition: a setting (of the set's settings) or, with a leading '@', an import: 0 absent, 1 readable, 2 writable. */
+/* A condition: a setting (of the set's settings) or, with a leading '@', an import: 0 absent, 1
+ * readable, 2 writable. */
 typedef struct lao_when {
     const char *name; /* NULL: always true */
     char compare;     /* '=', '!', '<', '>' */
@@ -189,16 +209,22 @@ typedef struct lao_image_row {
     const char *name;
     lao_format format;
     lao_size size;
-    uint32_t width, height;     /* LAO_SIZE_FIXED */
-    const char *levels;         /* NULL: 1; "*": down to 1x1 by ceil halving; else the setting that counts them */
-    uint32_t flags;             /* LAO_IMAGE_... */
+    uint32_t width, height; /* LAO_SIZE_FIXED */
+    const char
+        *levels; /* NULL: 1; "*": down to 1x1 by ceil halving; else the setting that counts them */
+    uint32_t flags; /* LAO_IMAGE_... */
     lao_encoding encoding;
     float clear[4];
-    lao_when when;              /* the image does not exist where this is false; references to it are dropped */
-    const char *channels[4];    /* names in a dump, "%d" is the level; NULL: not dumped */
+    lao_when when; /* the image does not exist where this is false; references to it are dropped */
+    const char *channels[4]; /* names in a dump, "%d" is the level; NULL: not dumped */
 } lao_image_row;
 
-typedef enum lao_level { LAO_LEVEL_SAME, LAO_LEVEL_FINER, LAO_LEVEL_COARSER, LAO_LEVEL_INDEX } lao_level;
+typedef enum lao_level {
+    LAO_LEVEL_SAME,
+    LAO_LEVEL_FINER,
+    LAO_LEVEL_COARSER,
+    LAO_LEVEL_INDEX
+} lao_level;
 typedef enum lao_phase {
     LAO_PHASE_THIS,    /* what was written last */
     LAO_PHASE_OTHER,   /* its ping-pong partner; becomes THIS once written */
@@ -211,7 +237,8 @@ typedef enum lao_load {
 } lao_load;
 
 typedef struct lao_reference {
-    const char *image; /* NULL ends the list; "#points" and "#colors" are the buffers of the line set */
+    const char
+        *image; /* NULL ends the list; "#points" and "#colors" are the buffers of the line set */
     lao_level level;
     uint32_t level_index; /* LAO_LEVEL_INDEX; past the last level means the last */
     lao_phase phase;
@@ -225,14 +252,22 @@ typedef enum lao_repeat {
     LAO_REPEAT_LEVELS_DOWN, /* last - 1 .. 0 */
     LAO_REPEAT_COUNT        /* as often as the setting `repeat_setting` says */
 } lao_repeat;
-typedef enum lao_scope { LAO_SCOPE_FRAME, LAO_SCOPE_PER_SET /* consecutive rows replay for each set */ } lao_scope;
-typedef enum lao_blend { LAO_BLEND_NONE, LAO_BLEND_OVER /* premultiplied */, LAO_BLEND_ADD } lao_blend;
+typedef enum lao_scope {
+    LAO_SCOPE_FRAME,
+    LAO_SCOPE_PER_SET /* consecutive rows replay for each set */
+} lao_scope;
+typedef enum lao_blend {
+    LAO_BLEND_NONE,
+    LAO_BLEND_OVER /* premultiplied */,
+    LAO_BLEND_ADD
+} lao_blend;
 typedef enum lao_depth_test {
     LAO_DEPTH_NONE,
     LAO_DEPTH_NEARER,
     LAO_DEPTH_ALWAYS,
-    LAO_DEPTH_COVERED /* full-screen: only where the depth image holds something; writes no depth. Skips background before
-                         the shader, which on llvmpipe an early return does not */
+    LAO_DEPTH_COVERED /* full-screen: only where the depth image holds something; writes no depth.
+                         Skips background before the shader, which on llvmpipe an early return does
+                         not */
 } lao_depth_test;
 
 #define LAO_MAX_READS 28
@@ -250,17 +285,23 @@ typedef struct lao_pass_row {
     lao_blend blend;
     lao_depth_test depth; /* with a D32F (or host depth) image among the writes */
     lao_when when[LAO_MAX_CONDITIONS];
-    lao_reference writes[LAO_MAX_WRITES]; /* colour outputs in location order; a depth image anywhere among them */
+    lao_reference writes[LAO_MAX_WRITES]; /* colour outputs in location order; a depth image
+                                             anywhere among them */
     lao_reference reads[LAO_MAX_READS];   /* index = binding of LAO_TEX in the shader */
 } lao_pass_row;
 
-typedef enum lao_setting_type { LAO_SETTING_FLOAT, LAO_SETTING_INT, LAO_SETTING_BOOL, LAO_SETTING_ENUM } lao_setting_type;
+typedef enum lao_setting_type {
+    LAO_SETTING_FLOAT,
+    LAO_SETTING_INT,
+    LAO_SETTING_BOOL,
+    LAO_SETTING_ENUM
+} lao_setting_type;
 
 typedef struct lao_setting_row {
     const char *name;
     lao_setting_type type;
     float minimum, maximum, standard;
-    int structural;      /* non-zero: changes the plan or a shader variant (a change costs a rebuild) */
+    int structural; /* non-zero: changes the plan or a shader variant (a change costs a rebuild) */
     const char *unit;    /* "mm", "px", "" */
     const char *choices; /* LAO_SETTING_ENUM: "a|b|c", value = position */
     const char *help;
@@ -295,7 +336,8 @@ typedef struct lao_shader {
     lao_shader_stage fragment;
 } lao_shader;
 
-/* Everything that a group of effects adds to the graph. A settings struct is `uint64_t set; float value[setting_count]`. */
+/* Everything that a group of effects adds to the graph. A settings struct is `uint64_t set; float
+ * value[setting_count]`. */
 typedef struct lao_module {
     const char *name;
     const lao_pass_row *passes;
@@ -310,59 +352,81 @@ typedef struct lao_module {
     uint32_t shader_count;
 } lao_module;
 
-/* The module of this header: line sets and line ambient occlusion. Static, never NULL. Thread: any. */
+/* The module of this header: line sets and line ambient occlusion. Static, never NULL. Thread: any.
+ */
 LAO_API const lao_module *lao_lines_module(void);
 /* Its passes in order. Thread: any. */
 LAO_API const lao_pass_row *lao_passes(int *count);
 
-/* ---------------------------------------------------------------------------------------------------------- settings
-   X(name, TYPE, minimum, maximum, default, structural, unit, choices, help). This table is the only place of a range, a
-   default and a help text: validation, uniforms, `lineao --help` and the README are made from it. */
-#define LAO_SETTINGS(X)                                                                                                \
-    X(preset, ENUM, 0, 2, 0, 1, "", "default|classic|paper", "starting point that the other settings override")        \
-    X(width, FLOAT, 0.0001f, 1000, 0.5f, 0, "mm", "", "full width of a line")                                          \
-    X(occlusion, BOOL, 0, 1, 1, 1, "", "", "compute ambient occlusion")                                                \
-    X(strength, FLOAT, 0, 5, 1.5f, 0, "", "", "occlusion multiplier; classic: 1; as many as levels: the printed sum")  \
-    X(align, ENUM, 0, 2, 0, 1, "", "rotation|paper|none", "alignment of tangents: 1 - |t.t'|, the paper's, or none")   \
-    X(align_intensity, FLOAT, 0, 100, 15, 0, "", "", "how fast misaligned lines darken each other (I of Eq. 11)")      \
-    X(align_floor, FLOAT, 0, 1, 0.1f, 0, "", "", "what parallel lines still darken each other (A0 of Eq. 11)")         \
-    X(light, ENUM, 0, 1, 0, 1, "", "paper|author", "light that takes occlusion away: Eq. 8, or the author's program")  \
-    X(halo, ENUM, 0, 0, 0, 1, "", "none", "outline of lines")                                                          \
-    X(levels, INT, 1, 8, 3, 1, "", "", "levels of the occlusion pyramid, each with a larger radius (s_r)")             \
-    X(samples, INT, 1, 128, 32, 1, "", "", "samples of the finest level; level l takes samples / (l + 1) (s_h)")       \
-    X(pyramid, ENUM, 0, 1, 0, 1, "", "box|gaussian", "how a coarser level averages the covered texels below it")       \
-    X(radius, FLOAT, 0.5f, 10, 1.5f, 0, "", "", "sampling radius of the finest level, in line widths")                 \
-    X(radius_step, FLOAT, 0.01f, 100, 2, 0, "mm", "", "growth of the sampling radius per level")                       \
-    X(density, FLOAT, 0.001f, 2, 1, 0, "", "", "depth at which occluders stop to matter, times (1 - l / levels)^2")    \
-    X(depth_threshold, FLOAT, 1e-7f, 0.01f, 1e-4f, 0, "", "", "nearest depth difference that occludes (delta 0)")      \
-    X(depth_unit, ENUM, 0, 1, 0, 0, "", "scene|mm", "depth differences relative to the scene's size, or in mm")        \
-    X(strict_zero, BOOL, 0, 1, 0, 1, "", "", "equal depth occludes too, as in the author's program")                   \
-    X(light_intensity, FLOAT, 0, 1, 0.5f, 0, "", "", "head light of the occlusion term (I_s)")                         \
-    X(light_diffuse, FLOAT, 0, 1, 1, 0, "", "", "diffuse part of the occlusion light")                                 \
-    X(light_specular, FLOAT, 0, 1, 1, 0, "", "", "specular part of the occlusion light")                               \
-    X(light_exponent, INT, 1, 1000, 100, 1, "", "", "Phong exponent of the occlusion light")                           \
-    X(ambient, FLOAT, 0, 1, 0.1f, 0, "", "", "ambient part of the line illumination")                                  \
-    X(diffuse, FLOAT, 0, 2, 0.9f, 0, "", "", "diffuse part of the line illumination")                                     \
-    X(specular, FLOAT, 0, 2, 0.35f, 0, "", "", "specular part of the line illumination")                                   \
-    X(shininess, INT, 1, 1000, 100, 1, "", "", "Phong exponent of the line illumination")                              \
-    X(supersampling, INT, 1, 4, 2, 1, "", "", "samples per pixel and axis; also scales time and memory")               \
-    X(smoothing, INT, 0, 10, 0, 1, "", "", "binomial blurs of the occlusion; for debugging: leaks shadows")            \
-    X(show, ENUM, 0, 8, 0, 1, "",                                                                                      \
-      "picture|occlusion|visibility|depth|light|alignment|visibility_depth|visibility_depth_light|color",              \
+/* ----------------------------------------------------------------------------------------------------------
+   settings X(name, TYPE, minimum, maximum, default, structural, unit, choices, help). This table is
+   the only place of a range, a default and a help text: validation, uniforms, `lineao --help` and
+   the README are made from it. */
+#define LAO_SETTINGS(X)                                                                            \
+    X(preset, ENUM, 0, 2, 0, 1, "", "default|classic|paper",                                       \
+      "starting point that the other settings override")                                           \
+    X(width, FLOAT, 0.0001f, 1000, 0.5f, 0, "mm", "", "full width of a line")                      \
+    X(occlusion, BOOL, 0, 1, 1, 1, "", "", "compute ambient occlusion")                            \
+    X(strength, FLOAT, 0, 5, 1.5f, 0, "", "",                                                      \
+      "occlusion multiplier; classic: 1; as many as levels: the printed sum")                      \
+    X(align, ENUM, 0, 2, 0, 1, "", "rotation|paper|none",                                          \
+      "alignment of tangents: 1 - |t.t'|, the paper's, or none")                                   \
+    X(align_intensity, FLOAT, 0, 100, 15, 0, "", "",                                               \
+      "how fast misaligned lines darken each other (I of Eq. 11)")                                 \
+    X(align_floor, FLOAT, 0, 1, 0.1f, 0, "", "",                                                   \
+      "what parallel lines still darken each other (A0 of Eq. 11)")                                \
+    X(light, ENUM, 0, 1, 0, 1, "", "paper|author",                                                 \
+      "light that takes occlusion away: Eq. 8, or the author's program")                           \
+    X(halo, ENUM, 0, 0, 0, 1, "", "none", "outline of lines")                                      \
+    X(levels, INT, 1, 8, 3, 1, "", "",                                                             \
+      "levels of the occlusion pyramid, each with a larger radius (s_r)")                          \
+    X(samples, INT, 1, 128, 32, 1, "", "",                                                         \
+      "samples of the finest level; level l takes samples / (l + 1) (s_h)")                        \
+    X(pyramid, ENUM, 0, 1, 0, 1, "", "box|gaussian",                                               \
+      "how a coarser level averages the covered texels below it")                                  \
+    X(radius, FLOAT, 0.5f, 10, 1.5f, 0, "", "",                                                    \
+      "sampling radius of the finest level, in line widths")                                       \
+    X(radius_step, FLOAT, 0.01f, 100, 2, 0, "mm", "", "growth of the sampling radius per level")   \
+    X(density, FLOAT, 0.001f, 2, 1, 0, "", "",                                                     \
+      "depth at which occluders stop to matter, times (1 - l / levels)^2")                         \
+    X(depth_threshold, FLOAT, 1e-7f, 0.01f, 1e-4f, 0, "", "",                                      \
+      "nearest depth difference that occludes (delta 0)")                                          \
+    X(depth_unit, ENUM, 0, 1, 0, 0, "", "scene|mm",                                                \
+      "depth differences relative to the scene's size, or in mm")                                  \
+    X(strict_zero, BOOL, 0, 1, 0, 1, "", "",                                                       \
+      "equal depth occludes too, as in the author's program")                                      \
+    X(light_intensity, FLOAT, 0, 1, 0.5f, 0, "", "", "head light of the occlusion term (I_s)")     \
+    X(light_diffuse, FLOAT, 0, 1, 1, 0, "", "", "diffuse part of the occlusion light")             \
+    X(light_specular, FLOAT, 0, 1, 1, 0, "", "", "specular part of the occlusion light")           \
+    X(light_exponent, INT, 1, 1000, 100, 1, "", "", "Phong exponent of the occlusion light")       \
+    X(ambient, FLOAT, 0, 1, 0.1f, 0, "", "", "ambient part of the line illumination")              \
+    X(diffuse, FLOAT, 0, 2, 0.9f, 0, "", "", "diffuse part of the line illumination")              \
+    X(specular, FLOAT, 0, 2, 0.35f, 0, "", "", "specular part of the line illumination")           \
+    X(shininess, INT, 1, 1000, 100, 1, "", "", "Phong exponent of the line illumination")          \
+    X(supersampling, INT, 1, 4, 2, 1, "", "",                                                      \
+      "samples per pixel and axis; also scales time and memory")                                   \
+    X(smoothing, INT, 0, 10, 0, 1, "", "",                                                         \
+      "binomial blurs of the occlusion; for debugging: leaks shadows")                             \
+    X(show, ENUM, 0, 8, 0, 1, "",                                                                  \
+      "picture|occlusion|visibility|depth|light|alignment|visibility_depth|visibility_depth_"      \
+      "light|color",                                                                               \
       "the picture, or factors of the occlusion alone (Koehler 2017, Fig. 4)")
 
-/* What a line set looks like. A field counts when it is not zero or its bit in `set` is on; otherwise the preset's value
-   holds, then the default. So `lao_settings s = {0}` is the recommended picture and an explicit 0 is
-   `s.strength = 0; s.set |= LAO_SET(strength)`. Enumerated settings hold the position of the choice. */
+/* What a line set looks like. A field counts when it is not zero or its bit in `set` is on;
+   otherwise the preset's value holds, then the default. So `lao_settings s = {0}` is the
+   recommended picture and an explicit 0 is `s.strength = 0; s.set |= LAO_SET(strength)`. Enumerated
+   settings hold the position of the choice. */
 typedef struct lao_settings {
     uint64_t set;
-#define LAO__FIELD(name, type, minimum, maximum, standard, structural, unit, choices, help) float name;
+#define LAO__FIELD(name, type, minimum, maximum, standard, structural, unit, choices, help)        \
+    float name;
     LAO_SETTINGS(LAO__FIELD)
 #undef LAO__FIELD
 } lao_settings;
 
 typedef enum lao_setting {
-#define LAO__ENUM(name, type, minimum, maximum, standard, structural, unit, choices, help) LAO_SETTING_ID_##name,
+#define LAO__ENUM(name, type, minimum, maximum, standard, structural, unit, choices, help)         \
+    LAO_SETTING_ID_##name,
     LAO_SETTINGS(LAO__ENUM)
 #undef LAO__ENUM
         LAO_SETTING_COUNT
@@ -371,100 +435,121 @@ typedef enum lao_setting {
 
 /* Every field as it will be used, all bits of `set` on. NULL counts as all zero. Thread: any. */
 LAO_API lao_settings lao_settings_filled(const lao_settings *settings);
-/* The same for any module: `values` receives module->setting_count numbers. `settings` is the module's struct or NULL.
-   Returns the index of the first setting outside its range (or not finite), -1 if none. Thread: any. */
+/* The same for any module: `values` receives module->setting_count numbers. `settings` is the
+   module's struct or NULL. Returns the index of the first setting outside its range (or not
+   finite), -1 if none. Thread: any. */
 LAO_API int lao_settings_resolve(const lao_module *module, const void *settings, float *values);
 /* Index of the setting of that name, -1 if there is none. Thread: any. */
 LAO_API int lao_setting_find(const lao_module *module, const char *name);
-/* Sets one setting of a module's struct from text: a number, true/false/on/off, or a choice. Returns 0, or -1 when `text`
-   is not a value of the setting (out of range, unknown choice); `settings` is then untouched. Thread: any. */
-LAO_API int lao_setting_parse(const lao_module *module, int setting, const char *text, void *settings);
+/* Sets one setting of a module's struct from text: a number, true/false/on/off, or a choice.
+   Returns 0, or -1 when `text` is not a value of the setting (out of range, unknown choice);
+   `settings` is then untouched. Thread: any. */
+LAO_API int lao_setting_parse(const lao_module *module, int setting, const char *text,
+                              void *settings);
 
-/* ------------------------------------------------------------------------------------------------------------- camera */
+/* -------------------------------------------------------------------------------------------------------------
+ * camera */
 
 enum {
-    LAO_CAMERA_ZERO_TO_ONE = 1,   /* clip depth is [0, w] (Vulkan, Direct3D); otherwise [-w, w] (OpenGL) */
+    LAO_CAMERA_ZERO_TO_ONE =
+        1, /* clip depth is [0, w] (Vulkan, Direct3D); otherwise [-w, w] (OpenGL) */
     LAO_CAMERA_REVERSE_DEPTH = 2, /* near is the larger depth */
-    LAO_CAMERA_FLIP_Y = 4         /* the projection turns the picture upside down (clip y points down) */
+    LAO_CAMERA_FLIP_Y = 4 /* the projection turns the picture upside down (clip y points down) */
 };
 
-/* Column-major, column vectors: clip = projection * view * world. Any handedness, perspective or orthographic, off-centre
-   too; no shear beyond that. */
+/* Column-major, column vectors: clip = projection * view * world. Any handedness, perspective or
+   orthographic, off-centre too; no shear beyond that. */
 typedef struct lao_camera {
     float view[16];
     float projection[16];
     uint32_t flags; /* LAO_CAMERA_... */
 } lao_camera;
 
-/* The same camera in the graph's convention: right-handed view space looking along -z, y up, clip depth [0, w]
-   (reversed or not as before). Returns 0, or -1 when a matrix is singular, not finite or not a projection. Thread: any. */
+/* The same camera in the graph's convention: right-handed view space looking along -z, y up, clip
+   depth [0, w] (reversed or not as before). Returns 0, or -1 when a matrix is singular, not finite
+   or not a projection. Thread: any. */
 LAO_API int lao_camera_canonical(const lao_camera *camera, lao_camera *canonical);
 
-/* ------------------------------------------------------------------------------------------------------------- images */
+/* -------------------------------------------------------------------------------------------------------------
+ * images */
 
 enum {
-    LAO_HOST_TEXTURE = 0,     /* GL texture name (2D) or VkImage + VkImageView */
+    LAO_HOST_TEXTURE = 0,      /* GL texture name (2D) or VkImage + VkImageView */
     LAO_HOST_RENDERBUFFER = 1, /* GL renderbuffer name: targets only */
-    LAO_HOST_FRAMEBUFFER = 2   /* GL framebuffer name, 0 included: its first colour attachment (or back buffer); targets only */
+    LAO_HOST_FRAMEBUFFER = 2   /* GL framebuffer name, 0 included: its first colour attachment (or
+                                  back buffer); targets only */
 };
 enum {
-    LAO_HOST_TOP_DOWN = 1,    /* row 0 of the image is the top of the picture: swapchains, and what Vulkan hosts draw */
-    LAO_HOST_WRITABLE = 2,    /* depth: our lines are written into it too */
-    LAO_HOST_ENCODE_SRGB = 4  /* target: our display values are decoded before the write, for images of an sRGB format that
-                                 encode on write */
+    LAO_HOST_TOP_DOWN = 1,   /* row 0 of the image is the top of the picture: swapchains, and what
+                                Vulkan hosts draw */
+    LAO_HOST_WRITABLE = 2,   /* depth: our lines are written into it too */
+    LAO_HOST_ENCODE_SRGB = 4 /* target: our display values are decoded before the write, for images
+                                of an sRGB format that encode on write */
 };
 
-/* A host's image, by value, with the state in which it comes and shall be left. All zero: no image. */
+/* A host's image, by value, with the state in which it comes and shall be left. All zero: no image.
+ */
 typedef struct lao_image {
-    uint64_t native;         /* GL: name. Vulkan: VkImage */
-    uint64_t native_view;    /* Vulkan: VkImageView of one mip, one layer; depth aspect only for depth */
-    uint32_t kind;           /* LAO_HOST_TEXTURE ... ; Vulkan: 0 */
-    uint32_t flags;          /* LAO_HOST_TOP_DOWN ... */
-    uint32_t native_format;  /* GL internal format (may be 0) or VkFormat (required) */
+    uint64_t native; /* GL: name. Vulkan: VkImage */
+    uint64_t
+        native_view; /* Vulkan: VkImageView of one mip, one layer; depth aspect only for depth */
+    uint32_t kind;   /* LAO_HOST_TEXTURE ... ; Vulkan: 0 */
+    uint32_t flags;  /* LAO_HOST_TOP_DOWN ... */
+    uint32_t native_format; /* GL internal format (may be 0) or VkFormat (required) */
     uint32_t width, height;
-    uint32_t present;        /* non-zero: this struct names an image (GL framebuffer 0 has native 0) */
-    uint32_t layout_before, layout_after;          /* VkImageLayout; after 0: as before */
-    uint64_t stage_before, stage_after;            /* VkPipelineStageFlags2; 0: all commands */
-    uint64_t access_before, access_after;          /* VkAccessFlags2; 0: memory read and write */
+    uint32_t present; /* non-zero: this struct names an image (GL framebuffer 0 has native 0) */
+    uint32_t layout_before, layout_after; /* VkImageLayout; after 0: as before */
+    uint64_t stage_before, stage_after;   /* VkPipelineStageFlags2; 0: all commands */
+    uint64_t access_before, access_after; /* VkAccessFlags2; 0: memory read and write */
 } lao_image;
 
-/* A host's image in place of one of the graph's: "host_depth" (depth to test against, view size), or the G-buffer of
-   lao_occlude: "color", "tangent", "depth". */
+/* A host's image in place of one of the graph's: "host_depth" (depth to test against, view size),
+   or the G-buffer of lao_occlude: "color", "tangent", "depth". */
 typedef struct lao_import {
     const char *image;
     lao_image source;
 } lao_import;
 
-/* ------------------------------------------------------------------------------------------------- contexts and objects */
+/* -------------------------------------------------------------------------------------------------
+ * contexts and objects */
 
 typedef struct lao_context lao_context;
-typedef struct lao_lines { uint32_t id; } lao_lines; /* 0: none */
-typedef struct lao_view { uint32_t id; } lao_view;   /* 0: none */
+typedef struct lao_lines {
+    uint32_t id;
+} lao_lines; /* 0: none */
+typedef struct lao_view {
+    uint32_t id;
+} lao_view; /* 0: none */
 
 #define LAO_BACKEND_ABI 1u
 struct lao_backend; /* the seam, below; the host only carries it from lao_*_backend to lao_create */
 
-/* A set of polylines. Points on a line that repeat bit for bit are merged; a line whose first and last point are equal is
-   closed; a point that is not finite ends its line and the rest begins another. */
+/* A set of polylines. Points on a line that repeat bit for bit are merged; a line whose first and
+   last point are equal is closed; a point that is not finite ends its line and the rest begins
+   another. */
 typedef struct lao_lines_desc {
     uint32_t line_count;
     uint32_t point_count;
-    const uint32_t *offsets;    /* line_count + 1 indices of points; NULL: one line of all points */
-    const float *points;        /* 3 * point_count, mm */
-    const float *times;         /* (Optional) point_count, ms */
-    const uint8_t *colors;      /* (Optional) 4 * point_count, RGBA, display values */
-    float color[4];             /* without `colors`: one colour, display values 0..1; all zero: sand */
+    const uint32_t *offsets; /* line_count + 1 indices of points; NULL: one line of all points */
+    const float *points;     /* 3 * point_count, mm */
+    const float *times;      /* (Optional) point_count, ms */
+    const uint8_t *colors;   /* (Optional) 4 * point_count, RGBA, display values */
+    float color[4];          /* without `colors`: one colour, display values 0..1; all zero: sand */
 } lao_lines_desc;
 
 typedef struct lao_view_desc {
     uint32_t width, height; /* px */
     uint32_t flags;         /* LAO_VIEW_... */
 } lao_view_desc;
-enum { LAO_VIEW_KEEP_IMAGES = 1 /* no image shares memory with another, so that lao_read can read any: tests, tools */ };
+enum {
+    LAO_VIEW_KEEP_IMAGES =
+        1 /* no image shares memory with another, so that lao_read can read any: tests, tools */
+};
 
 typedef struct lao_set {
     lao_lines lines;              /* id 0: none, a set that draws nothing */
-    const lao_settings *settings; /* NULL: the recommended ones. `supersampling` and `depth_unit` are the first set's */
+    const lao_settings *settings; /* NULL: the recommended ones. `supersampling` and `depth_unit`
+                                     are the first set's */
 } lao_set;
 
 enum { LAO_FRAME_TIMINGS = 1 /* measure every pass (GL: finishes after each; slow) */ };
@@ -472,108 +557,133 @@ enum { LAO_FRAME_TIMINGS = 1 /* measure every pass (GL: finishes after each; slo
 typedef struct lao_frame {
     lao_view view;
     lao_camera camera;
-    const lao_set *sets; /* drawn in order, each occluding itself, hidden by the others through depth */
+    const lao_set
+        *sets; /* drawn in order, each occluding itself, hidden by the others through depth */
     uint32_t set_count;
-    uint32_t flags;             /* LAO_FRAME_... */
-    float background[4];        /* display values, not premultiplied; alpha 0: the target's content shows between lines */
-    float sphere[4];            /* (Optional) centre and radius (mm) of everything that takes part; radius 0: from the sets */
-    lao_image target;           /* where the picture goes; not present: nowhere (lao_read still reads it) */
-    const lao_import *imports;  /* (Optional) */
+    uint32_t flags;      /* LAO_FRAME_... */
+    float background[4]; /* display values, not premultiplied; alpha 0: the target's content shows
+                            between lines */
+    float sphere[4];  /* (Optional) centre and radius (mm) of everything that takes part; radius 0:
+                         from the sets */
+    lao_image target; /* where the picture goes; not present: nowhere (lao_read still reads it) */
+    const lao_import *imports; /* (Optional) */
     uint32_t import_count;
-    float time;                 /* ms */
-    void *commands;             /* Vulkan: the VkCommandBuffer to record into, outside a render pass. GL: NULL */
+    float time; /* ms */
+    void
+        *commands; /* Vulkan: the VkCommandBuffer to record into, outside a render pass. GL: NULL */
 } lao_frame;
 
 typedef struct lao_desc {
-    const struct lao_backend *backend; /* filled by lao_gl_backend, lao_vk_backend or lao_null_backend; copied */
+    const struct lao_backend
+        *backend; /* filled by lao_gl_backend, lao_vk_backend or lao_null_backend; copied */
     lao_allocator allocator;
     lao_logger logger;
-    const lao_module *const *modules; /* (Optional) further modules, in front of which the line module stands */
+    const lao_module *const
+        *modules; /* (Optional) further modules, in front of which the line module stands */
     uint32_t module_count;
 } lao_desc;
 
-/* Makes a context on the backend. The host's context or device must stay alive (GL: current) until lao_destroy.
-   Thread: the one that will use the context. */
+/* Makes a context on the backend. The host's context or device must stay alive (GL: current) until
+   lao_destroy. Thread: the one that will use the context. */
 LAO_API lao_result lao_create(const lao_desc *desc, lao_context **context);
-/* Destroys everything made with the context. Vulkan: the device must be done with its work. NULL is allowed. */
+/* Destroys everything made with the context. Vulkan: the device must be done with its work. NULL is
+ * allowed. */
 LAO_API void lao_destroy(lao_context *context);
 
 /* Uploads a line set. 0 lines is a legal set that draws nothing. */
-LAO_API lao_result lao_lines_create(lao_context *context, const lao_lines_desc *desc, lao_lines *lines);
+LAO_API lao_result lao_lines_create(lao_context *context, const lao_lines_desc *desc,
+                                    lao_lines *lines);
 /* Replaces the content of a line set; on failure the old content stays. */
-LAO_API lao_result lao_lines_update(lao_context *context, lao_lines lines, const lao_lines_desc *desc);
+LAO_API lao_result lao_lines_update(lao_context *context, lao_lines lines,
+                                    const lao_lines_desc *desc);
 /* Destroys a line set; frames under way keep what they need. */
 LAO_API lao_result lao_lines_destroy(lao_context *context, lao_lines lines);
-/* Axis-aligned box (mm) of the finite points: bounds[0] lower, bounds[1] upper corner. All zero for an empty set. */
+/* Axis-aligned box (mm) of the finite points: bounds[0] lower, bounds[1] upper corner. All zero for
+ * an empty set. */
 LAO_API lao_result lao_lines_bounds(lao_context *context, lao_lines lines, float bounds[2][3]);
 
 /* A view holds the scratch images of one viewport. */
 LAO_API lao_result lao_view_create(lao_context *context, const lao_view_desc *desc, lao_view *view);
-LAO_API lao_result lao_view_resize(lao_context *context, lao_view view, uint32_t width, uint32_t height);
+LAO_API lao_result lao_view_resize(lao_context *context, lao_view view, uint32_t width,
+                                   uint32_t height);
 LAO_API lao_result lao_view_destroy(lao_context *context, lao_view view);
 
 /* Draws one frame. GL: at once, in the current context. Vulkan: recorded into frame->commands. */
 LAO_API lao_result lao_render(lao_context *context, const lao_frame *frame);
 
-/* Occlusion and shading of a G-buffer that the host drew: `frame->imports` must name "color" (RGBA, alpha 1 where covered),
-   "tangent" (xyz: unit tangent in canonical view space; w: pixels per mm, 0: from depth) and "depth" (METHODS of
-   docs/algorithm.md: 0..1 over the scene sphere), all of view size times supersampling, row 0 at the bottom. No sets are
-   drawn; `settings` may be NULL. frame->sphere is required. */
-LAO_API lao_result lao_occlude(lao_context *context, const lao_frame *frame, const lao_settings *settings);
+/* Occlusion and shading of a G-buffer that the host drew: `frame->imports` must name "color" (RGBA,
+   alpha 1 where covered), "tangent" (xyz: unit tangent in canonical view space; w: pixels per mm,
+   0: from depth) and "depth" (METHODS of docs/algorithm.md: 0..1 over the scene sphere), all of
+   view size times supersampling, row 0 at the bottom. No sets are drawn; `settings` may be NULL.
+   frame->sphere is required. */
+LAO_API lao_result lao_occlude(lao_context *context, const lao_frame *frame,
+                               const lao_settings *settings);
 
-/* One image of the last frame as floats: channel_count of the image row interleaved, row 0 at the bottom, decoded (see
-   lao_encoding). `data` may be NULL to ask for the size only. Stalls. Vulkan: needs lao_vk_desc.queue, and the frame's
-   commands must have finished. */
+/* One image of the last frame as floats: channel_count of the image row interleaved, row 0 at the
+   bottom, decoded (see lao_encoding). `data` may be NULL to ask for the size only. Stalls. Vulkan:
+   needs lao_vk_desc.queue, and the frame's commands must have finished. */
 typedef struct lao_read_info {
     uint32_t width, height, channels;
 } lao_read_info;
-LAO_API lao_result lao_read(lao_context *context, lao_view view, const char *image, uint32_t level, float *data,
-                            size_t capacity /* floats */, lao_read_info *info);
+LAO_API lao_result lao_read(lao_context *context, lao_view view, const char *image, uint32_t level,
+                            float *data, size_t capacity /* floats */, lao_read_info *info);
 /* The same, raw texels as stored: width * height * lao_format_bytes bytes. */
-LAO_API lao_result lao_read_raw(lao_context *context, lao_view view, const char *image, uint32_t level, void *data,
-                                size_t capacity /* bytes */, lao_read_info *info);
+LAO_API lao_result lao_read_raw(lao_context *context, lao_view view, const char *image,
+                                uint32_t level, void *data, size_t capacity /* bytes */,
+                                lao_read_info *info);
 
-/* Milliseconds of each pass of the last frame rendered with LAO_FRAME_TIMINGS, in order of the plan. `count` goes in as
-   the capacity and comes out as the number of rows that there are. Vulkan: the commands must have finished. */
+/* Milliseconds of each pass of the last frame rendered with LAO_FRAME_TIMINGS, in order of the
+   plan. `count` goes in as the capacity and comes out as the number of rows that there are. Vulkan:
+   the commands must have finished. */
 typedef struct lao_timing {
     const char *pass;
     uint32_t set, level;
     double milliseconds;
 } lao_timing;
-LAO_API lao_result lao_timings(lao_context *context, lao_view view, lao_timing *timings, uint32_t *count);
+LAO_API lao_result lao_timings(lao_context *context, lao_view view, lao_timing *timings,
+                               uint32_t *count);
 
 /* The context's graph as Graphviz text, piece by piece. Thread: any. */
 LAO_API void lao_graph_print(const lao_module *const *modules, uint32_t module_count,
                              void (*write)(void *user, const char *text), void *user);
 
-/* ----------------------------------------------------------------------------------------------------------- backends */
+/* -----------------------------------------------------------------------------------------------------------
+ * backends */
 
-enum { LAO_GL_RESTORE = 0 /* leave the host's state as it was */, LAO_GL_RESET = 1 /* leave GL's initial state */, LAO_GL_DIRTY = 2 };
+enum {
+    LAO_GL_RESTORE = 0 /* leave the host's state as it was */,
+    LAO_GL_RESET = 1 /* leave GL's initial state */,
+    LAO_GL_DIRTY = 2
+};
 
 typedef struct lao_gl_desc {
-    void *(*get_proc)(const char *name, void *user); /* required: the loader of the current context */
-    double (*now)(void *user);                       /* (Optional) seconds; for lao_timings */
+    void *(*get_proc)(const char *name,
+                      void *user); /* required: the loader of the current context */
+    double (*now)(void *user);     /* (Optional) seconds; for lao_timings */
     void *user;
     uint32_t state_mode; /* LAO_GL_RESTORE ... */
 } lao_gl_desc;
 
-/* Vulkan handles are passed as they are: dispatchable ones as pointers. Enabled on the device: dynamicRendering and
-   synchronization2, as core 1.3 or as extensions of 1.2. */
+/* Vulkan handles are passed as they are: dispatchable ones as pointers. Enabled on the device:
+   dynamicRendering and synchronization2, as core 1.3 or as extensions of 1.2. */
 typedef struct lao_vk_desc {
     void *instance, *physical_device, *device; /* VkInstance, VkPhysicalDevice, VkDevice */
-    void *(*get_instance_proc)(void *instance, const char *name); /* vkGetInstanceProcAddr; required */
-    uint32_t api_version;      /* VK_MAKE_API_VERSION(...) that instance and device were made for; 0: 1.3 */
-    uint32_t queue_family;     /* where the host's command buffers are submitted: graphics */
-    void *queue;               /* (Optional) VkQueue for lao_read; externally synchronised by the host */
+    void *(*get_instance_proc)(void *instance,
+                               const char *name); /* vkGetInstanceProcAddr; required */
+    uint32_t
+        api_version; /* VK_MAKE_API_VERSION(...) that instance and device were made for; 0: 1.3 */
+    uint32_t queue_family; /* where the host's command buffers are submitted: graphics */
+    void *queue; /* (Optional) VkQueue for lao_read; externally synchronised by the host */
     uint32_t frames_in_flight; /* frames recorded before the first of them has finished; 0: 2 */
-    uint32_t debug_utils;      /* non-zero: VK_EXT_debug_utils is enabled; passes and objects get names */
+    uint32_t
+        debug_utils; /* non-zero: VK_EXT_debug_utils is enabled; passes and objects get names */
 } lao_vk_desc;
 
 /* Writes what it would do as text: for tests and for learning. */
 typedef struct lao_null_desc {
     void (*write)(void *user, const char *text); /* NULL: silent */
     void *user;
-    uint32_t fail_at; /* (Tests) the n-th backend call fails; 0: never */
+    uint32_t fail_at;          /* (Tests) the n-th backend call fails; 0: never */
     const lao_shader *shaders; /* (Optional) checked for existence */
     uint32_t shader_count;
 } lao_null_desc;
@@ -583,17 +693,24 @@ LAO_API lao_result lao_gl_backend(const lao_gl_desc *desc, struct lao_backend *b
 LAO_API lao_result lao_vk_backend(const lao_vk_desc *desc, struct lao_backend *backend);
 LAO_API lao_result lao_null_backend(const lao_null_desc *desc, struct lao_backend *backend);
 
-/* -------------------------------------------------------------------------------------------------------- the plan
-   A frame graph flattened for one structure: no conditions, repeats or names are left. Pure data. */
+/* --------------------------------------------------------------------------------------------------------
+   the plan A frame graph flattened for one structure: no conditions, repeats or names are left.
+   Pure data. */
 
 #define LAO_NO_INDEX 0xffffffffu
 /* Values of lao_plan_step.reads that are no instances. */
 #define LAO_READ_POINTS 0xfffffff0u
 #define LAO_READ_COLORS 0xfffffff1u
 
-typedef enum lao_access { LAO_ACCESS_NONE, LAO_ACCESS_SAMPLE, LAO_ACCESS_COLOR, LAO_ACCESS_DEPTH } lao_access;
+typedef enum lao_access {
+    LAO_ACCESS_NONE,
+    LAO_ACCESS_SAMPLE,
+    LAO_ACCESS_COLOR,
+    LAO_ACCESS_DEPTH
+} lao_access;
 
-/* One (image, level, phase). Its memory is a slot; `slot[1]` is used in odd frames (history images swap). */
+/* One (image, level, phase). Its memory is a slot; `slot[1]` is used in odd frames (history images
+ * swap). */
 typedef struct lao_plan_instance {
     uint32_t image; /* index in lao_graph.images */
     uint32_t level;
@@ -601,7 +718,8 @@ typedef struct lao_plan_instance {
     uint32_t width, height;
     lao_format format;
     uint32_t slot[2]; /* LAO_NO_INDEX: imported */
-    uint32_t import;  /* index of the frame's import list, LAO_NO_INDEX: ours; the target is LAO_IMPORT_TARGET */
+    uint32_t import;  /* index of the frame's import list, LAO_NO_INDEX: ours; the target is
+                         LAO_IMPORT_TARGET */
     uint32_t first_step, last_step;
 } lao_plan_instance;
 #define LAO_IMPORT_TARGET 0xfffffffeu
@@ -619,8 +737,9 @@ typedef struct lao_plan_write {
     float value[4];    /* clear colour, or depth in [0] */
 } lao_plan_write;
 
-/* Before the step, the memory of `instance` passes from access `before` to `after`. `before` NONE: from the earlier frame, or
-   from the host (imports). The barriers behind the last step give imports back: `after` NONE. */
+/* Before the step, the memory of `instance` passes from access `before` to `after`. `before` NONE:
+   from the earlier frame, or from the host (imports). The barriers behind the last step give
+   imports back: `after` NONE. */
 typedef struct lao_plan_barrier {
     uint32_t instance;
     lao_access before, after;
@@ -629,17 +748,18 @@ typedef struct lao_plan_barrier {
 
 /* Same rows as lao_step_uniforms of the shared text. */
 typedef struct lao_plan_step {
-    uint32_t module, pass;   /* rows of lao_graph */
+    uint32_t module, pass; /* rows of lao_graph */
     const lao_pass_row *row;
-    uint32_t shader;         /* index in lao_graph.shader_names */
-    uint32_t set;            /* 0 for LAO_SCOPE_FRAME */
+    uint32_t shader; /* index in lao_graph.shader_names */
+    uint32_t set;    /* 0 for LAO_SCOPE_FRAME */
     uint32_t level, iteration;
-    uint32_t width, height;  /* of what is written */
-    uint32_t color_count;    /* entries of `colors`, LAO_NO_INDEX holes included */
+    uint32_t width, height; /* of what is written */
+    uint32_t color_count;   /* entries of `colors`, LAO_NO_INDEX holes included */
     lao_plan_write colors[LAO_MAX_WRITES];
-    lao_plan_write depth;    /* instance LAO_NO_INDEX: no depth attachment */
+    lao_plan_write depth; /* instance LAO_NO_INDEX: no depth attachment */
     uint32_t read_count;
-    uint32_t reads[LAO_MAX_READS]; /* instances, LAO_READ_POINTS, LAO_READ_COLORS; LAO_NO_INDEX: does not exist here */
+    uint32_t reads[LAO_MAX_READS]; /* instances, LAO_READ_POINTS, LAO_READ_COLORS; LAO_NO_INDEX:
+                                      does not exist here */
     int32_t constants[LAO_MAX_CONSTANTS]; /* values of the shader's constants for this set */
     uint32_t barrier_first, barrier_count;
     float uniforms[8]; /* lao_step_uniforms */
@@ -655,8 +775,8 @@ typedef struct lao_plan {
     lao_plan_barrier *barriers;
     uint32_t barrier_count, barrier_capacity;
     uint32_t end_barrier_first; /* from here to barrier_count: after the last step */
-    uint32_t reverse_depth; /* the depth test and the clear value are turned round */
-    uint32_t serial;        /* grows with every remake; backends compare it */
+    uint32_t reverse_depth;     /* the depth test and the clear value are turned round */
+    uint32_t serial;            /* grows with every remake; backends compare it */
 } lao_plan;
 
 /* All modules of a context, names resolved. */
@@ -677,39 +797,44 @@ typedef struct lao_plan_desc {
     uint32_t flags;         /* LAO_VIEW_... */
     uint32_t reverse_depth;
     uint32_t set_count;
-    const float *const *values; /* per set: resolved settings of all modules, one after another; at least one entry */
+    const float *const *values; /* per set: resolved settings of all modules, one after another; at
+                                   least one entry */
     const lao_import *imports;
     uint32_t import_count;
     uint32_t has_target;
-    const lao_shader *const *shaders; /* by index in lao_graph.shader_names; NULL entries allowed without constants */
+    const lao_shader *const
+        *shaders; /* by index in lao_graph.shader_names; NULL entries allowed without constants */
 } lao_plan_desc;
 
-/* Flattens the graph. `plan` is all zero or an earlier plan, whose memory is used again. Pure but for the allocator. */
-LAO_API lao_result lao_plan_make(const lao_graph *graph, const lao_plan_desc *desc, const lao_allocator *allocator,
-                                 lao_plan *plan);
+/* Flattens the graph. `plan` is all zero or an earlier plan, whose memory is used again. Pure but
+ * for the allocator. */
+LAO_API lao_result lao_plan_make(const lao_graph *graph, const lao_plan_desc *desc,
+                                 const lao_allocator *allocator, lao_plan *plan);
 LAO_API void lao_plan_free(const lao_allocator *allocator, lao_plan *plan);
 /* Writes a plan as text, one line a step. Thread: any. */
-LAO_API void lao_plan_print(const lao_graph *graph, const lao_plan *plan, void (*write)(void *user, const char *text),
-                            void *user);
+LAO_API void lao_plan_print(const lao_graph *graph, const lao_plan *plan,
+                            void (*write)(void *user, const char *text), void *user);
 
 /* Joins modules into a graph. Free with lao_graph_free. */
-LAO_API lao_result lao_graph_make(const lao_module *const *modules, uint32_t module_count, const lao_allocator *allocator,
-                                  lao_graph *graph);
+LAO_API lao_result lao_graph_make(const lao_module *const *modules, uint32_t module_count,
+                                  const lao_allocator *allocator, lao_graph *graph);
 LAO_API void lao_graph_free(const lao_allocator *allocator, lao_graph *graph);
-/* Proves that every read has an earlier write or an import, no row reads what it writes, every image is used, every
-   setting, image and shader named exists, names are unique and every pass contributes to an output. Returns 0, or -1 with
-   the first fault in `text`. `shaders` NULL: existence of shaders is not checked. Thread: any. */
-LAO_API int lao_graph_check(const lao_graph *graph, const lao_shader *shaders, uint32_t shader_count, char *text,
-                            size_t text_size);
+/* Proves that every read has an earlier write or an import, no row reads what it writes, every
+   image is used, every setting, image and shader named exists, names are unique and every pass
+   contributes to an output. Returns 0, or -1 with the first fault in `text`. `shaders` NULL:
+   existence of shaders is not checked. Thread: any. */
+LAO_API int lao_graph_check(const lao_graph *graph, const lao_shader *shaders,
+                            uint32_t shader_count, char *text, size_t text_size);
 
-/* ----------------------------------------------------------------------------------------------------------- the seam
-   What a backend is. See docs/porting.md. Functions return LAO_OK or log one item and return its result. */
+/* -----------------------------------------------------------------------------------------------------------
+   the seam What a backend is. See docs/porting.md. Functions return LAO_OK or log one item and
+   return its result. */
 
 typedef struct lao_backend_caps {
-    uint32_t max_image_size;          /* px */
-    uint32_t max_texture_units;       /* textures one stage can read */
-    uint32_t max_buffer_texels;       /* longest texel buffer */
-    const lao_shader *shaders;        /* lineao_shaders.h */
+    uint32_t max_image_size;    /* px */
+    uint32_t max_texture_units; /* textures one stage can read */
+    uint32_t max_buffer_texels; /* longest texel buffer */
+    const lao_shader *shaders;  /* lineao_shaders.h */
     uint32_t shader_count;
 } lao_backend_caps;
 
@@ -719,7 +844,7 @@ typedef struct lao_host {
     void (*report)(void *context, lao_log_item item, const char *detail); /* logs one item */
     void *context;
     const lao_graph *graph;
-    uint32_t settings_size;  /* bytes of one set's settings block: a multiple of 16 */
+    uint32_t settings_size; /* bytes of one set's settings block: a multiple of 16 */
 } lao_host;
 
 typedef struct lao_buffer_desc {
@@ -741,16 +866,17 @@ typedef struct lao_draw {
 
 typedef struct lao_execution {
     const lao_plan *plan;
-    uint32_t parity;              /* which of slot[2] */
-    const void *frame_uniforms;   /* lao_frame_uniforms */
-    uint32_t frame_size;          /* its bytes */
-    const void *set_uniforms;     /* blocks of lao_host.settings_size bytes: set * graph.module_count + module */
-    const lao_draw *draws;        /* per set */
-    uint32_t set_count;           /* at least 1; lao_occlude has one set without chunks */
+    uint32_t parity;            /* which of slot[2] */
+    const void *frame_uniforms; /* lao_frame_uniforms */
+    uint32_t frame_size;        /* its bytes */
+    const void *set_uniforms; /* blocks of lao_host.settings_size bytes: set * graph.module_count +
+                                 module */
+    const lao_draw *draws;    /* per set */
+    uint32_t set_count;       /* at least 1; lao_occlude has one set without chunks */
     const lao_import *imports;
     uint32_t import_count;
-    lao_image target;             /* not present: steps that write it were dropped */
-    uint32_t flags;               /* LAO_FRAME_... */
+    lao_image target; /* not present: steps that write it were dropped */
+    uint32_t flags;   /* LAO_FRAME_... */
     void *commands;
 } lao_execution;
 
@@ -758,19 +884,23 @@ typedef struct lao_backend {
     uint32_t abi; /* LAO_BACKEND_ABI */
     const char *name;
     uint64_t storage[32]; /* the backend's copy of its desc */
-    /* Makes the backend's own state `self` (from host->allocator) and fills caps. `host` lives until detach. */
-    lao_result (*attach)(const struct lao_backend *backend, const lao_host *host, void **self, lao_backend_caps *caps);
+    /* Makes the backend's own state `self` (from host->allocator) and fills caps. `host` lives
+     * until detach. */
+    lao_result (*attach)(const struct lao_backend *backend, const lao_host *host, void **self,
+                         lao_backend_caps *caps);
     void (*detach)(void *self);
     lao_result (*buffer_create)(void *self, const lao_buffer_desc *desc, void **buffer);
     void (*buffer_destroy)(void *self, void *buffer); /* frames under way keep it */
     lao_result (*view_create)(void *self, void **view);
     void (*view_destroy)(void *self, void *view); /* frames under way keep it */
-    /* Makes textures, framebuffers and programs for a plan; called again when the plan's serial changed. After a failure
-       the view is empty and may be prepared again. */
-    lao_result (*view_prepare)(void *self, void *view, const lao_plan *plan, const lao_shader *const *shaders);
+    /* Makes textures, framebuffers and programs for a plan; called again when the plan's serial
+       changed. After a failure the view is empty and may be prepared again. */
+    lao_result (*view_prepare)(void *self, void *view, const lao_plan *plan,
+                               const lao_shader *const *shaders);
     lao_result (*execute)(void *self, void *view, const lao_execution *execution);
     /* Raw texels of a slot, row 0 first, tightly packed. */
-    lao_result (*read)(void *self, void *view, const lao_plan *plan, uint32_t slot, void *data, size_t size);
+    lao_result (*read)(void *self, void *view, const lao_plan *plan, uint32_t slot, void *data,
+                       size_t size);
     /* Milliseconds per step of the last execution with timings. */
     lao_result (*timings)(void *self, void *view, double *milliseconds, uint32_t step_count);
 } lao_backend;
@@ -779,11 +909,12 @@ typedef struct lao_backend {
 }
 #endif
 
-/* ------------------------------------------------------------------------------------------------------- shared text
-   From here to LAO_SHARED_END the text is C99, C++11 and GLSL at once: amalgamate.sh puts its bytes in front of every
-   shader, so that what the tests prove is what the GPU runs. Only + - * /, sqrt, floor, abs, min, max, comparisons and
-   integers; every expression of several operations is assigned to an LAO_EXACT local, so that no compiler may contract or
-   reorder it: C, OpenGL and Vulkan agree to the bit (docs/algorithm.md, "Bit-equal"). */
+/* -------------------------------------------------------------------------------------------------------
+   shared text From here to LAO_SHARED_END the text is C99, C++11 and GLSL at once: amalgamate.sh
+   puts its bytes in front of every shader, so that what the tests prove is what the GPU runs. Only
+   + - * /, sqrt, floor, abs, min, max, comparisons and integers; every expression of several
+   operations is assigned to an LAO_EXACT local, so that no compiler may contract or reorder it: C,
+   OpenGL and Vulkan agree to the bit (docs/algorithm.md, "Bit-equal"). */
 /* LAO_SHARED_BEGIN */
 #ifndef LAO_GLSL
 #ifndef __cplusplus
@@ -796,19 +927,67 @@ typedef struct lao_backend {
 #define LAO_I(x) ((int32_t)(x))
 typedef uint32_t lao_uint;
 typedef int32_t lao_int;
-typedef struct lao_v2 { float x, y; } lao_v2;
-typedef struct lao_v3 { float x, y, z; } lao_v3;
-typedef struct lao_v4 { float x, y, z, w; } lao_v4;
-LAO_FN lao_v2 lao_v2_make(float x, float y) { lao_v2 v; v.x = x; v.y = y; return v; }
-LAO_FN lao_v3 lao_v3_make(float x, float y, float z) { lao_v3 v; v.x = x; v.y = y; v.z = z; return v; }
-LAO_FN lao_v4 lao_v4_make(float x, float y, float z, float w) { lao_v4 v; v.x = x; v.y = y; v.z = z; v.w = w; return v; }
-LAO_FN float lao_sqrt(float x) { return sqrtf(x); }
-LAO_FN float lao_floor(float x) { return floorf(x); }
-LAO_FN float lao_abs(float x) { return fabsf(x); }
-LAO_FN float lao_min(float a, float b) { return b < a ? b : a; }
-LAO_FN float lao_max(float a, float b) { return a < b ? b : a; }
-LAO_FN float lao_bits_float(lao_uint u) { union { uint32_t u; float f; } b; b.u = u; return b.f; }
-LAO_FN lao_uint lao_float_bits(float f) { union { uint32_t u; float f; } b; b.f = f; return b.u; }
+typedef struct lao_v2 {
+    float x, y;
+} lao_v2;
+typedef struct lao_v3 {
+    float x, y, z;
+} lao_v3;
+typedef struct lao_v4 {
+    float x, y, z, w;
+} lao_v4;
+LAO_FN lao_v2 lao_v2_make(float x, float y) {
+    lao_v2 v;
+    v.x = x;
+    v.y = y;
+    return v;
+}
+LAO_FN lao_v3 lao_v3_make(float x, float y, float z) {
+    lao_v3 v;
+    v.x = x;
+    v.y = y;
+    v.z = z;
+    return v;
+}
+LAO_FN lao_v4 lao_v4_make(float x, float y, float z, float w) {
+    lao_v4 v;
+    v.x = x;
+    v.y = y;
+    v.z = z;
+    v.w = w;
+    return v;
+}
+LAO_FN float lao_sqrt(float x) {
+    return sqrtf(x);
+}
+LAO_FN float lao_floor(float x) {
+    return floorf(x);
+}
+LAO_FN float lao_abs(float x) {
+    return fabsf(x);
+}
+LAO_FN float lao_min(float a, float b) {
+    return b < a ? b : a;
+}
+LAO_FN float lao_max(float a, float b) {
+    return a < b ? b : a;
+}
+LAO_FN float lao_bits_float(lao_uint u) {
+    union {
+        uint32_t u;
+        float f;
+    } b;
+    b.u = u;
+    return b.f;
+}
+LAO_FN lao_uint lao_float_bits(float f) {
+    union {
+        uint32_t u;
+        float f;
+    } b;
+    b.f = f;
+    return b.u;
+}
 #else
 #define LAO_FN
 #ifdef LAO_PRECISE
@@ -846,21 +1025,24 @@ typedef struct lao_m4 lao_m4;
 
 /* Per frame. Rows of four floats only, so that std140 and C lay them out alike. */
 struct lao_frame_uniforms {
-    lao_m4 view;        /* world to canonical view space */
-    lao_m4 projection;  /* canonical view space to clip space */
-    lao_v4 ray;         /* view slope of a pixel centre: x = ray.x * px + ray.z, y = ray.y * py + ray.w */
-    lao_v4 viewport;    /* supersampled width, height, 1 / width, 1 / height */
-    lao_v4 depth;       /* z0, 1 / (z1 - z0) of the scene sphere; z1 - z0; 1 for an orthographic camera */
-    lao_v4 scale;       /* pixels per unit of NDC slope: W/2 * P00, H/2 * P11; 1 for reverse depth; time in ms */
-    lao_v4 unproject;   /* canonical window depth d to view depth z: (x + y d) / (z + w d) */
-    lao_v4 background;  /* premultiplied */
-    lao_v4 target;      /* target width, height; 1: flip rows; 1: decode sRGB */
-    lao_v4 host_depth;  /* size of the host's depth image; 1: flip rows; depth differences times w are in depth_unit */
+    lao_m4 view;       /* world to canonical view space */
+    lao_m4 projection; /* canonical view space to clip space */
+    lao_v4 ray; /* view slope of a pixel centre: x = ray.x * px + ray.z, y = ray.y * py + ray.w */
+    lao_v4 viewport; /* supersampled width, height, 1 / width, 1 / height */
+    lao_v4 depth; /* z0, 1 / (z1 - z0) of the scene sphere; z1 - z0; 1 for an orthographic camera */
+    lao_v4 scale; /* pixels per unit of NDC slope: W/2 * P00, H/2 * P11; 1 for reverse depth; time
+                     in ms */
+    lao_v4 unproject;  /* canonical window depth d to view depth z: (x + y d) / (z + w d) */
+    lao_v4 background; /* premultiplied */
+    lao_v4 target;     /* target width, height; 1: flip rows; 1: decode sRGB */
+    lao_v4 host_depth; /* size of the host's depth image; 1: flip rows; depth differences times w
+                          are in depth_unit */
 };
 /* Per step of the plan. */
 struct lao_step_uniforms {
     lao_v4 size;   /* width, height of what is written; level; iteration */
-    lao_v4 source; /* width, height of the first image read; set; number of levels of the first image written */
+    lao_v4 source; /* width, height of the first image read; set; number of levels of the first
+                      image written */
 };
 #ifndef LAO_GLSL
 typedef struct lao_frame_uniforms lao_frame_uniforms;
@@ -871,9 +1053,15 @@ typedef struct lao_step_uniforms lao_step_uniforms;
 #define LAO_GHOST_TIME 3.0e38f /* w of a point buffer texel that is no point of a line */
 
 /* ---- vectors: explicit order of evaluation */
-LAO_FN lao_v3 lao_v3_add(lao_v3 a, lao_v3 b) { return lao_v3_make(a.x + b.x, a.y + b.y, a.z + b.z); }
-LAO_FN lao_v3 lao_v3_sub(lao_v3 a, lao_v3 b) { return lao_v3_make(a.x - b.x, a.y - b.y, a.z - b.z); }
-LAO_FN lao_v3 lao_v3_scale(lao_v3 a, float s) { return lao_v3_make(a.x * s, a.y * s, a.z * s); }
+LAO_FN lao_v3 lao_v3_add(lao_v3 a, lao_v3 b) {
+    return lao_v3_make(a.x + b.x, a.y + b.y, a.z + b.z);
+}
+LAO_FN lao_v3 lao_v3_sub(lao_v3 a, lao_v3 b) {
+    return lao_v3_make(a.x - b.x, a.y - b.y, a.z - b.z);
+}
+LAO_FN lao_v3 lao_v3_scale(lao_v3 a, float s) {
+    return lao_v3_make(a.x * s, a.y * s, a.z * s);
+}
 LAO_FN float lao_v2_dot(lao_v2 a, lao_v2 b) {
     LAO_EXACT float r = a.x * b.x + a.y * b.y;
     return r;
@@ -919,7 +1107,9 @@ LAO_FN lao_v4 lao_project(lao_m4 m, lao_v3 p) {
 }
 
 /* ---- elementary functions: minimax polynomials, each tested against double precision */
-LAO_FN float lao_clamp01(float x) { return lao_min(lao_max(x, 0.0f), 1.0f); }
+LAO_FN float lao_clamp01(float x) {
+    return lao_min(lao_max(x, 0.0f), 1.0f);
+}
 /* h(x) = 3 x^2 - 2 x^3 on [0, 1] (Koehler 2017, Eq. 6) */
 LAO_FN float lao_hermite(float x) {
     LAO_EXACT float t = lao_clamp01(x);
@@ -930,17 +1120,24 @@ LAO_FN float lao_hermite(float x) {
 LAO_FN float lao_cos_turns(float t) {
     LAO_EXACT float a = 0.25f - lao_abs(t - lao_floor(t + 0.5f));
     LAO_EXACT float s = a * a;
-    LAO_EXACT float r = a * (6.28318528f + s * (-41.3416807f + s * (81.6024851f + s * (-76.5813965f + s * 39.7616174f))));
+    LAO_EXACT float r =
+        a * (6.28318528f +
+             s * (-41.3416807f + s * (81.6024851f + s * (-76.5813965f + s * 39.7616174f))));
     return r;
 }
-LAO_FN float lao_sin_turns(float t) { return lao_cos_turns(t - 0.25f); }
+LAO_FN float lao_sin_turns(float t) {
+    return lao_cos_turns(t - 0.25f);
+}
 /* 2^x for x in [-126, 127], clamped outside; relative error below 3e-7 */
 LAO_FN float lao_exp2(float x) {
     LAO_EXACT float c = lao_min(lao_max(x, -126.0f), 127.0f);
     LAO_EXACT float n = lao_floor(c + 0.5f);
     LAO_EXACT float f = c - n;
-    LAO_EXACT float p = 1.0f + f * (0.693147207f + f * (0.240226515f + f * (0.0555032722f + f * (0.00961799451f +
-                        f * (0.00134004317f + f * 0.000154780225f)))));
+    LAO_EXACT float p =
+        1.0f + f * (0.693147207f +
+                    f * (0.240226515f +
+                         f * (0.0555032722f +
+                              f * (0.00961799451f + f * (0.00134004317f + f * 0.000154780225f)))));
     LAO_EXACT float r = p * lao_bits_float(LAO_U(LAO_I(n) + 127) << 23u);
     return r;
 }
@@ -957,8 +1154,15 @@ LAO_FN float lao_log2(float x) {
         exponent = exponent + 1;
     }
     LAO_EXACT float f = m - 1.0f;
-    LAO_EXACT float p = f * (1.442695f + f * (-0.721347199f + f * (0.48091028f + f * (-0.360716264f + f * (0.287939095f +
-                        f * (-0.23867568f + f * (0.215212249f + f * (-0.208933813f + f * 0.1292643f))))))));
+    LAO_EXACT float p =
+        f *
+        (1.442695f +
+         f * (-0.721347199f +
+              f * (0.48091028f +
+                   f * (-0.360716264f +
+                        f * (0.287939095f +
+                             f * (-0.23867568f +
+                                  f * (0.215212249f + f * (-0.208933813f + f * 0.1292643f))))))));
     LAO_EXACT float r = p + LAO_F(exponent);
     return r;
 }
@@ -972,8 +1176,15 @@ LAO_FN float lao_atan2(float y, float x) {
     }
     LAO_EXACT float t = lao_min(ax, ay) / large;
     LAO_EXACT float s = t * t;
-    LAO_EXACT float r = t * (0.999999986f + s * (-0.33333094f + s * (0.199930542f + s * (-0.142071342f + s * (0.106546796f +
-                        s * (-0.0753368101f + s * (0.0430394294f + s * (-0.0162830477f + s * 0.00290356285f))))))));
+    LAO_EXACT float r =
+        t * (0.999999986f +
+             s * (-0.33333094f +
+                  s * (0.199930542f +
+                       s * (-0.142071342f +
+                            s * (0.106546796f +
+                                 s * (-0.0753368101f +
+                                      s * (0.0430394294f +
+                                           s * (-0.0162830477f + s * 0.00290356285f))))))));
     if (ay > ax) {
         r = 1.57079633f - r;
     }
@@ -991,8 +1202,8 @@ LAO_FN float lao_acos(float x) {
     LAO_EXACT float s = (1.0f - c) * (1.0f + c);
     return lao_atan2(lao_sqrt(s), c);
 }
-/* x^n, 0 <= x <= 1, 0 <= n < 1024, by repeated squaring; results below 2^-100 are 0, because denormal numbers on the way
-   to them cost a CPU more than all the rest */
+/* x^n, 0 <= x <= 1, 0 <= n < 1024, by repeated squaring; results below 2^-100 are 0, because
+   denormal numbers on the way to them cost a CPU more than all the rest */
 LAO_FN float lao_power(float x, lao_int n) {
     LAO_EXACT float least = lao_exp2(-100.0f / LAO_F(n > 0 ? n : 1));
     LAO_EXACT float r = 1.0f;
@@ -1055,13 +1266,16 @@ LAO_FN lao_v4 lao_depth_pack(float depth, float valid) {
     return lao_v4_make(r, g, b, valid);
 }
 LAO_FN float lao_depth_unpack(lao_v4 texel) {
-    LAO_EXACT float d = texel.x * 0.996093809f + texel.y * 0.00389099144f + texel.z * 1.51991853e-5f;
+    LAO_EXACT float d =
+        texel.x * 0.996093809f + texel.y * 0.00389099144f + texel.z * 1.51991853e-5f;
     return d;
 }
 /* Two numbers in [-1, 1] with 16 bits each; 0 comes back as less than 1e-6. */
 LAO_FN lao_v4 lao_axial_pack(float c, float s) {
-    lao_uint i = LAO_U(lao_floor((lao_min(lao_max(c, -1.0f), 1.0f) * 0.5f + 0.5f) * 65534.0f + 0.5f));
-    lao_uint j = LAO_U(lao_floor((lao_min(lao_max(s, -1.0f), 1.0f) * 0.5f + 0.5f) * 65534.0f + 0.5f));
+    lao_uint i =
+        LAO_U(lao_floor((lao_min(lao_max(c, -1.0f), 1.0f) * 0.5f + 0.5f) * 65534.0f + 0.5f));
+    lao_uint j =
+        LAO_U(lao_floor((lao_min(lao_max(s, -1.0f), 1.0f) * 0.5f + 0.5f) * 65534.0f + 0.5f));
     LAO_EXACT float x = LAO_F(i >> 8u) / 255.0f;
     LAO_EXACT float y = LAO_F(i & 255u) / 255.0f;
     LAO_EXACT float z = LAO_F(j >> 8u) / 255.0f;
@@ -1135,9 +1349,12 @@ LAO_FN lao_level_sum lao_level_sum_start(lao_v3 zero) {
     return sum;
 }
 /* Stencil [1 3 3 1] / 8 at child -1 .. 2 of a texel. */
-LAO_FN float lao_gauss_weight(lao_int child) { return child == 0 || child == 1 ? 0.375f : 0.125f; }
+LAO_FN float lao_gauss_weight(lao_int child) {
+    return child == 0 || child == 1 ? 0.375f : 0.125f;
+}
 /* Adds a child; its tangent is turned to the side of those before it. */
-LAO_FN lao_level_sum lao_level_sum_add(lao_level_sum sum, lao_v4 child, lao_v3 tangent, float stencil) {
+LAO_FN lao_level_sum lao_level_sum_add(lao_level_sum sum, lao_v4 child, lao_v3 tangent,
+                                       float stencil) {
     lao_level_sum r = sum;
     LAO_EXACT float w = stencil * child.z;
     LAO_EXACT float x = sum.x + w * child.x;
@@ -1164,7 +1381,8 @@ LAO_FN lao_v4 lao_level_sum_mean(lao_level_sum sum) {
 }
 
 /* ---- camera */
-/* View depth (mm along the view axis) to the depth that occlusion compares: 0..1 over the scene sphere (METHODS 1.3). */
+/* View depth (mm along the view axis) to the depth that occlusion compares: 0..1 over the scene
+ * sphere (METHODS 1.3). */
 LAO_FN float lao_scene_depth(lao_v4 depth, float z) {
     LAO_EXACT float d = (z - depth.x) * depth.y;
     return lao_clamp01(d);
@@ -1173,7 +1391,17 @@ LAO_FN float lao_view_depth(lao_v4 depth, float scene_depth) {
     LAO_EXACT float z = depth.x + scene_depth * depth.z;
     return z;
 }
-/* Slope (perspective) or position (orthographic) of the view ray through a pixel centre; px = ix + 0.5. */
+/* View depth of a fragment: clip w is it in perspective, where window depth has lost its precision;
+   else from window depth, which is then linear. */
+LAO_FN float lao_fragment_depth(lao_v4 unproject, lao_v4 depth, float window_depth,
+                                float inverse_w) {
+    LAO_EXACT float perspective = 1.0f / inverse_w;
+    LAO_EXACT float orthographic =
+        (unproject.x + unproject.y * window_depth) / (unproject.z + unproject.w * window_depth);
+    return depth.w > 0.5f ? orthographic : perspective;
+}
+/* Slope (perspective) or position (orthographic) of the view ray through a pixel centre; px = ix +
+ * 0.5. */
 LAO_FN lao_v2 lao_pixel_slope(lao_v4 ray, float px, float py) {
     LAO_EXACT float x = ray.x * px + ray.z;
     LAO_EXACT float y = ray.y * py + ray.w;
@@ -1186,7 +1414,8 @@ LAO_FN lao_v3 lao_towards_eye(lao_v2 slope, float orthographic) {
     }
     return lao_v3_unit(lao_v3_make(-slope.x, -slope.y, 1.0f), lao_v3_make(0.0f, 0.0f, 1.0f));
 }
-/* Pixels per mm at view position p across the direction o (METHODS 1.4): Eq. 14 in pixels, aspect-correct, xy only. */
+/* Pixels per mm at view position p across the direction o (METHODS 1.4): Eq. 14 in pixels,
+ * aspect-correct, xy only. */
 LAO_FN float lao_zoom(lao_m4 projection, lao_v4 viewport, lao_v3 p, lao_v3 o) {
     lao_v4 a = lao_project(projection, p);
     lao_v4 b = lao_project(projection, lao_v3_add(p, o));
@@ -1213,11 +1442,13 @@ struct lao_line_end {
 #ifndef LAO_GLSL
 typedef struct lao_line_end lao_line_end;
 #endif
-/* e: direction of view at the end point; own, other: the segment's and its neighbour's vector in the line's direction
-   (other = 0: no neighbour); outward: +1 at the segment's end, -1 at its start. Turns up to 90 degrees as seen share
-   mitred corners; sharper ones, and mitres longer than half a segment, end square, half a width beyond the joint, so that the
-   two ends cover the wedge between them. */
-LAO_FN lao_line_end lao_line_join(lao_v3 e, lao_v3 own, lao_v3 other, float half_width, float outward) {
+/* e: direction of view at the end point; own, other: the segment's and its neighbour's vector in
+   the line's direction (other = 0: no neighbour); outward: +1 at the segment's end, -1 at its
+   start. Turns up to 90 degrees as seen share mitred corners; sharper ones, and mitres longer than
+   half a segment, end square, half a width beyond the joint, so that the two ends cover the wedge
+   between them. */
+LAO_FN lao_line_end lao_line_join(lao_v3 e, lao_v3 own, lao_v3 other, float half_width,
+                                  float outward) {
     lao_line_end end;
     lao_v3 ray = lao_v3_unit(e, lao_v3_make(0.0f, 0.0f, -1.0f));
     lao_v3 right = lao_v3_make(1.0f, 0.0f, 0.0f);
@@ -1237,7 +1468,8 @@ LAO_FN lao_line_end lao_line_join(lao_v3 e, lao_v3 own, lao_v3 other, float half
         lao_v3 n = lao_v3_unit(other_cross, o);
         LAO_EXACT float c = lao_v3_dot(o, n);
         LAO_EXACT float reach2 = half_width * half_width * (1.0f - c) / lao_max(1.0f + c, 1.0e-6f);
-        LAO_EXACT float shorter = lao_min(own_length2 * lao_v3_dot(own, own), other_length2 * lao_v3_dot(other, other));
+        LAO_EXACT float shorter =
+            lao_min(own_length2 * lao_v3_dot(own, own), other_length2 * lao_v3_dot(other, other));
         if (own_length2 >= 1.0e-12f && (c >= 0.87f || (c >= 0.0f && 4.0f * reach2 <= shorter))) {
             LAO_EXACT float s = half_width / (1.0f + c);
             end.across = lao_v3_scale(lao_v3_add(o, n), s);
@@ -1248,7 +1480,8 @@ LAO_FN lao_line_end lao_line_join(lao_v3 e, lao_v3 own, lao_v3 other, float half
     }
     return end;
 }
-/* n = (T x L) x T, the line normal that faces the light L (Zoeckler 1996); any normal where the line is seen end-on. */
+/* n = (T x L) x T, the line normal that faces the light L (Zoeckler 1996); any normal where the
+ * line is seen end-on. */
 LAO_FN lao_v3 lao_line_normal(lao_v3 t, lao_v3 l) {
     LAO_EXACT float tl = lao_v3_dot(t, l);
     lao_v3 n = lao_v3_along(l, t, -tl);
@@ -1261,8 +1494,9 @@ LAO_FN lao_v3 lao_line_normal(lao_v3 t, lao_v3 l) {
     LAO_EXACT float inverse = 1.0f / lao_sqrt(length2);
     return lao_v3_scale(n, inverse);
 }
-/* The line's direction on the screen as an axial vector (cos 2a, sin 2a), (0, 0) when it is seen end-on (METHODS 2.1, 2.3):
-   the projection of the view-space tangent, exact at every pixel. `scale` is lao_frame_uniforms.scale. */
+/* The line's direction on the screen as an axial vector (cos 2a, sin 2a), (0, 0) when it is seen
+   end-on (METHODS 2.1, 2.3): the projection of the view-space tangent, exact at every pixel.
+   `scale` is lao_frame_uniforms.scale. */
 LAO_FN lao_v2 lao_screen_axial(lao_v3 t, lao_v2 slope, lao_v4 scale, float orthographic) {
     LAO_EXACT float k = orthographic > 0.5f ? 0.0f : t.z;
     LAO_EXACT float x = (t.x + slope.x * k) * scale.x;
@@ -1293,7 +1527,8 @@ LAO_FN lao_v2 lao_screen_axial(lao_v3 t, lao_v2 slope, lao_v4 scale, float ortho
 #define LAO_SHOW_VISIBILITY_DEPTH 6
 #define LAO_SHOW_VISIBILITY_DEPTH_LIGHT 7
 #define LAO_SHOW_COLOR 8
-/* Which factors a sample's weight is made of: all of them, or what the setting `show` singles out (Fig. 4). */
+/* Which factors a sample's weight is made of: all of them, or what the setting `show` singles out
+ * (Fig. 4). */
 LAO_FN bool lao_uses_visibility(lao_int show) {
     return show != LAO_SHOW_DEPTH && show != LAO_SHOW_LIGHT && show != LAO_SHOW_ALIGNMENT;
 }
@@ -1301,7 +1536,8 @@ LAO_FN bool lao_uses_depth(lao_int show) {
     return show != LAO_SHOW_VISIBILITY && show != LAO_SHOW_LIGHT && show != LAO_SHOW_ALIGNMENT;
 }
 LAO_FN bool lao_uses_light(lao_int show) {
-    return show <= LAO_SHOW_OCCLUSION || show == LAO_SHOW_LIGHT || show >= LAO_SHOW_VISIBILITY_DEPTH_LIGHT;
+    return show <= LAO_SHOW_OCCLUSION || show == LAO_SHOW_LIGHT ||
+           show >= LAO_SHOW_VISIBILITY_DEPTH_LIGHT;
 }
 LAO_FN bool lao_uses_alignment(lao_int show) {
     return show <= LAO_SHOW_OCCLUSION || show == LAO_SHOW_ALIGNMENT || show == LAO_SHOW_COLOR;
@@ -1325,15 +1561,18 @@ LAO_FN float lao_depth_weight_slope(float reach, float threshold) {
     LAO_EXACT float slope = 1.0f / width;
     return slope;
 }
-/* Eq. 8 and 9 with the receiver's cosine: n_omega = n.omega >= 0, r_omega = max(r.omega, 0), diffuse = I k_d n.l */
-LAO_FN float lao_light_weight(float diffuse, float n_omega, float specular, float r_omega, lao_int exponent) {
+/* Eq. 8 and 9 with the receiver's cosine: n_omega = n.omega >= 0, r_omega = max(r.omega, 0),
+ * diffuse = I k_d n.l */
+LAO_FN float lao_light_weight(float diffuse, float n_omega, float specular, float r_omega,
+                              lao_int exponent) {
     LAO_EXACT float l = diffuse * n_omega + specular * lao_power(r_omega, exponent);
     LAO_EXACT float g = 1.0f - lao_min(l, 1.0f);
     return g;
 }
-/* The light form of the author's program: 1.5 - max(omega.n, 0)(spec + diff), the reflection at the occluder, whose normal
-   faces omega; l: towards the eye (METHODS 1.8). */
-LAO_FN float lao_light_weight_author(lao_v3 omega, float n_omega, lao_v3 occluder, lao_v3 l, lao_int exponent) {
+/* The light form of the author's program: 1.5 - max(omega.n, 0)(spec + diff), the reflection at the
+   occluder, whose normal faces omega; l: towards the eye (METHODS 1.8). */
+LAO_FN float lao_light_weight_author(lao_v3 omega, float n_omega, lao_v3 occluder, lao_v3 l,
+                                     lao_int exponent) {
     if (!(lao_v3_dot(occluder, occluder) > 0.25f)) {
         return 1.5f;
     }
@@ -1345,7 +1584,8 @@ LAO_FN float lao_light_weight_author(lao_v3 omega, float n_omega, lao_v3 occlude
     LAO_EXACT float g = lao_max(1.5f - n_omega * (specular + diffuse), 0.0f);
     return g;
 }
-/* Difference of direction x in [0, 1], 1 - |t.t'|, from axial unit vectors; -1 when either is (0, 0), no direction. */
+/* Difference of direction x in [0, 1], 1 - |t.t'|, from axial unit vectors; -1 when either is (0,
+ * 0), no direction. */
 LAO_FN float lao_axial_difference(lao_v2 a, lao_v2 b) {
     LAO_EXACT float c = a.x * b.x + a.y * b.y;
     LAO_EXACT float x = lao_max(1.0f - lao_sqrt(lao_max(0.5f + 0.5f * c, 0.0f)), 0.0f);
@@ -1364,11 +1604,12 @@ LAO_FN float lao_align_weight(float difference, float intensity, float least) {
     return difference < 0.0f ? 1.0f : bounded;
 }
 
-/* What a pixel needs for all samples of one level: the mirror at N and the radius folded into three vectors, so that
-   omega.x r, omega.y r and omega.n are one dot product each with the literal direction. */
+/* What a pixel needs for all samples of one level: the mirror at N and the radius folded into three
+   vectors, so that omega.x r, omega.y r and omega.n are one dot product each with the literal
+   direction. */
 struct lao_sampler {
-    lao_v3 x, y, n, r;    /* rows: offset in texels of the level, normal, reflected light */
-    lao_v2 centre;        /* pixel centre in texels of the level */
+    lao_v3 x, y, n, r; /* rows: offset in texels of the level, normal, reflected light */
+    lao_v2 centre;     /* pixel centre in texels of the level */
 };
 #ifndef LAO_GLSL
 typedef struct lao_sampler lao_sampler;
@@ -1379,8 +1620,8 @@ LAO_FN lao_v3 lao_mirror(lao_v3 v, lao_v3 n) {
     return lao_v3_along(v, n, t);
 }
 /* radius in pixels of the finest level; texel = 1 / 2^level */
-LAO_FN lao_sampler lao_sampler_make(lao_v3 noise, lao_v3 normal, lao_v3 reflected, float radius, float texel, float px,
-                                    float py) {
+LAO_FN lao_sampler lao_sampler_make(lao_v3 noise, lao_v3 normal, lao_v3 reflected, float radius,
+                                    float texel, float px, float py) {
     lao_sampler s;
     LAO_EXACT float scale = lao_max(radius * texel, 1.5f);
     s.x = lao_v3_scale(lao_mirror(lao_v3_make(1.0f, 0.0f, 0.0f), noise), scale);
@@ -1390,8 +1631,8 @@ LAO_FN lao_sampler lao_sampler_make(lao_v3 noise, lao_v3 normal, lao_v3 reflecte
     s.centre = lao_v2_make(px * texel, py * texel);
     return s;
 }
-/* One sample: texel (x, y) of the level, cosines to normal and reflection, use = 0 where it is not counted (outside the
-   image or in the centre's own texel). */
+/* One sample: texel (x, y) of the level, cosines to normal and reflection, use = 0 where it is not
+   counted (outside the image or in the centre's own texel). */
 struct lao_tap {
     float x, y, n_omega, r_omega, flip, use;
 };
@@ -1412,7 +1653,8 @@ LAO_FN lao_tap lao_tap_make(lao_sampler s, lao_v3 direction, lao_v2 size) {
     LAO_EXACT float middle_y = 0.5f * size.y - 0.5f;
     LAO_EXACT float inside_x = middle_x - lao_abs(x - middle_x);
     LAO_EXACT float inside_y = middle_y - lao_abs(y - middle_y);
-    LAO_EXACT float use = lao_min(lao_min(inside_x, inside_y) + 1.0f, apart); /* at least 1 when it counts */
+    LAO_EXACT float use =
+        lao_min(lao_min(inside_x, inside_y) + 1.0f, apart); /* at least 1 when it counts */
     tap.use = use > 0.5f ? 1.0f : 0.0f;
     tap.x = x;
     tap.y = y;
@@ -1424,9 +1666,10 @@ LAO_FN float lao_sample_radius(float zoom, float factor, float width, float step
     return r;
 }
 
-/* ---- shading (METHODS 1.2, 1.8, 1.9): Phong with a head light, then all of it times 1 - occlusion */
-LAO_FN lao_v3 lao_shade(lao_v3 color, lao_v3 t, lao_v3 l, float ambient, float diffuse, float specular, lao_int exponent,
-                        float occlusion) {
+/* ---- shading (METHODS 1.2, 1.8, 1.9): Phong with a head light, then all of it times 1 - occlusion
+ */
+LAO_FN lao_v3 lao_shade(lao_v3 color, lao_v3 t, lao_v3 l, float ambient, float diffuse,
+                        float specular, lao_int exponent, float occlusion) {
     lao_v3 n = lao_line_normal(t, l);
     LAO_EXACT float nl = lao_max(lao_v3_dot(n, l), 0.0f);
     LAO_EXACT float rl = lao_max(2.0f * nl * nl - 1.0f, 0.0f);
@@ -1475,7 +1718,8 @@ LAO_FN float lao_srgb_decode(float v) {
 extern "C" {
 #endif
 
-/* ================================================================================================ tables of the module */
+/* ================================================================================================
+ * tables of the module */
 // clang-format off
 #define LAO__NOTHING {NULL, LAO_LEVEL_SAME, 0, LAO_PHASE_THIS, LAO_LOAD_DISCARD}
 #define LAO__READ(image) {image, LAO_LEVEL_SAME, 0, LAO_PHASE_THIS, LAO_LOAD_DISCARD}
@@ -1566,7 +1810,9 @@ static const lao_module lao__lines_module = {
 };
 // clang-format on
 
-const lao_module *lao_lines_module(void) { return &lao__lines_module; }
+const lao_module *lao_lines_module(void) {
+    return &lao__lines_module;
+}
 
 const lao_pass_row *lao_passes(int *count) {
     if (count) {
@@ -1595,7 +1841,8 @@ uint32_t lao_format_bytes(lao_format format) {
     return (uint32_t)format < LAO_FORMAT_COUNT ? bytes[format] : 0;
 }
 
-/* ======================================================================================================= small helpers */
+/* =======================================================================================================
+ * small helpers */
 
 static void *lao__default_allocate(void *user, size_t size) {
     (void)user;
@@ -1639,7 +1886,8 @@ static void lao__delete(const lao_allocator *allocator, void *memory, size_t cou
 }
 
 /* Makes room for one more item; 0 on success. */
-static int lao__grow(const lao_allocator *allocator, void **items, uint32_t count, uint32_t *capacity, size_t size) {
+static int lao__grow(const lao_allocator *allocator, void **items, uint32_t count,
+                     uint32_t *capacity, size_t size) {
     uint32_t larger;
     void *memory;
     if (count < *capacity) {
@@ -1669,7 +1917,8 @@ static int lao__finite(const float *values, size_t count) {
     return 1;
 }
 
-/* ============================================================================================================ settings */
+/* ============================================================================================================
+ * settings */
 
 int lao_setting_find(const lao_module *module, const char *name) {
     uint32_t i;
@@ -1730,7 +1979,8 @@ int lao_settings_resolve(const lao_module *module, const void *settings, float *
         float wanted = lao__settings_values(settings)[preset];
         for (i = 0; i < module->preset_count; i++) {
             const lao_preset_row *row = &module->presets[i];
-            if ((float)lao__choice(module->settings[preset].choices, row->preset, strlen(row->preset)) == wanted) {
+            if ((float)lao__choice(module->settings[preset].choices, row->preset,
+                                   strlen(row->preset)) == wanted) {
                 values[lao_setting_find(module, row->setting)] = row->value;
             }
         }
@@ -1755,7 +2005,8 @@ lao_settings lao_settings_filled(const lao_settings *settings) {
     return filled;
 }
 
-/* A decimal number without the locale's help: [+-]digits[.digits][e[+-]digits]. Returns the end, or NULL. */
+/* A decimal number without the locale's help: [+-]digits[.digits][e[+-]digits]. Returns the end, or
+ * NULL. */
 static const char *lao__number(const char *text, double *value) {
     double sign = 1, mantissa = 0, scale = 1;
     int exponent = 0, exponent_sign = 1, digits = 0;
@@ -1792,7 +2043,8 @@ int lao_setting_parse(const lao_module *module, int setting, const char *text, v
     uint64_t set;
     int choice;
     const char *end;
-    if (!module || setting < 0 || (uint32_t)setting >= module->setting_count || !text || !settings) {
+    if (!module || setting < 0 || (uint32_t)setting >= module->setting_count || !text ||
+        !settings) {
         return -1;
     }
     row = &module->settings[setting];
@@ -1821,10 +2073,12 @@ int lao_setting_parse(const lao_module *module, int setting, const char *text, v
     return 0;
 }
 
-/* ============================================================================================================== camera */
+/* ==============================================================================================================
+ * camera */
 
 static double lao__determinant3(const double m[3][3]) {
-    return m[0][0] * (m[1][1] * m[2][2] - m[1][2] * m[2][1]) - m[0][1] * (m[1][0] * m[2][2] - m[1][2] * m[2][0]) +
+    return m[0][0] * (m[1][1] * m[2][2] - m[1][2] * m[2][1]) -
+           m[0][1] * (m[1][0] * m[2][2] - m[1][2] * m[2][0]) +
            m[0][2] * (m[1][0] * m[2][1] - m[1][1] * m[2][0]);
 }
 
@@ -1840,11 +2094,12 @@ int lao_camera_canonical(const lao_camera *camera, lao_camera *canonical) {
             v[r][c] = camera->view[c * 4 + r];
         }
     }
-    /* The shaders' view rays know no shear: rows (a 0 b 0), (0 d e 0), (0 0 g h), (0 0 +-1 0), or (a 0 0 c), (0 d 0 f),
-       (0 0 g h), (0 0 0 1). */
-    if (p[0][1] != 0 || p[1][0] != 0 || p[2][0] != 0 || p[2][1] != 0 || p[3][0] != 0 || p[3][1] != 0 ||
-        p[0][p[3][2] == 0 ? 2 : 3] != 0 || p[1][p[3][2] == 0 ? 2 : 3] != 0 ||
-        (p[3][2] == 0) == (p[3][3] == 0) || p[0][0] == 0 || p[1][1] == 0 || p[2][2] * p[3][3] == p[2][3] * p[3][2]) {
+    /* The shaders' view rays know no shear: rows (a 0 b 0), (0 d e 0), (0 0 g h), (0 0 +-1 0), or
+       (a 0 0 c), (0 d 0 f), (0 0 g h), (0 0 0 1). */
+    if (p[0][1] != 0 || p[1][0] != 0 || p[2][0] != 0 || p[2][1] != 0 || p[3][0] != 0 ||
+        p[3][1] != 0 || p[0][p[3][2] == 0 ? 2 : 3] != 0 || p[1][p[3][2] == 0 ? 2 : 3] != 0 ||
+        (p[3][2] == 0) == (p[3][3] == 0) || p[0][0] == 0 || p[1][1] == 0 ||
+        p[2][2] * p[3][3] == p[2][3] * p[3][2]) {
         return -1;
     }
     for (c = 0; c < 4; c++) {
@@ -1855,8 +2110,8 @@ int lao_camera_canonical(const lao_camera *camera, lao_camera *canonical) {
             p[2][c] = 0.5 * (p[2][c] + p[3][c]);
         }
     }
-    /* Left-handed: the eye looks along +z. Turn z round in both matrices. For an orthographic projection the sign of the
-       depth row tells: unreversed depth must grow along -z. */
+    /* Left-handed: the eye looks along +z. Turn z round in both matrices. For an orthographic
+       projection the sign of the depth row tells: unreversed depth must grow along -z. */
     {
         int reverse = (camera->flags & LAO_CAMERA_REVERSE_DEPTH) != 0;
         int left = p[3][2] != 0 ? p[3][2] > 0 : ((p[2][2] / p[3][3] > 0) != reverse);
@@ -1878,8 +2133,8 @@ int lao_camera_canonical(const lao_camera *camera, lao_camera *canonical) {
             linear[r][c] = v[r][c];
         }
     }
-    if (!(fabs(lao__determinant3((const double(*)[3])linear)) > 1e-30) || v[3][0] != 0 || v[3][1] != 0 || v[3][2] != 0 ||
-        v[3][3] != 1) {
+    if (!(fabs(lao__determinant3((const double(*)[3])linear)) > 1e-30) || v[3][0] != 0 ||
+        v[3][1] != 0 || v[3][2] != 0 || v[3][3] != 1) {
         return -1;
     }
     for (r = 0; r < 4; r++) {
@@ -1892,7 +2147,8 @@ int lao_camera_canonical(const lao_camera *camera, lao_camera *canonical) {
     return 0;
 }
 
-/* =============================================================================================================== graph */
+/* ===============================================================================================================
+ * graph */
 
 #define LAO__MOST_SETTINGS 64u /* bits of `set` */
 #define LAO__BUFFER_MARK '#'
@@ -1908,11 +2164,13 @@ static uint32_t lao__image_find(const lao_graph *graph, const char *name) {
     return LAO_NO_INDEX;
 }
 
-/* The module that has a setting of that name, the asking one first; its index within the concatenated values. */
+/* The module that has a setting of that name, the asking one first; its index within the
+ * concatenated values. */
 static uint32_t lao__value_find(const lao_graph *graph, uint32_t module, const char *name) {
     uint32_t pass, m, first;
     for (pass = 0; pass < 2; pass++) {
-        for (m = 0, first = 0; m < graph->module_count; first += graph->modules[m]->setting_count, m++) {
+        for (m = 0, first = 0; m < graph->module_count;
+             first += graph->modules[m]->setting_count, m++) {
             int i = (pass == 0) == (m == module) ? lao_setting_find(graph->modules[m], name) : -1;
             if (i >= 0) {
                 return first + (uint32_t)i;
@@ -1943,8 +2201,8 @@ static uint32_t lao__shader_name(lao_graph *graph, const char **names, const cha
     return graph->shader_count++;
 }
 
-lao_result lao_graph_make(const lao_module *const *modules, uint32_t module_count, const lao_allocator *allocator,
-                          lao_graph *graph) {
+lao_result lao_graph_make(const lao_module *const *modules, uint32_t module_count,
+                          const lao_allocator *allocator, lao_graph *graph) {
     lao_allocator a = lao__allocator_or_default(allocator);
     lao_graph g;
     uint32_t m, i, image = 0, pass = 0;
@@ -1995,19 +2253,22 @@ static int lao__check_names(const lao_graph *graph, char *text, size_t size) {
     for (i = 0; i < graph->image_count; i++) {
         for (k = 0; k < i; k++) {
             if (strcmp(graph->images[i]->name, graph->images[k]->name) == 0) {
-                return lao__fault(text, size, "two images are named '%s'%s", graph->images[i]->name, "");
+                return lao__fault(text, size, "two images are named '%s'%s", graph->images[i]->name,
+                                  "");
             }
         }
         if (graph->images[i]->levels && strcmp(graph->images[i]->levels, "*") != 0 &&
             lao__value_find(graph, 0, graph->images[i]->levels) == LAO_NO_INDEX) {
-            return lao__fault(text, size, "image '%s' counts its levels by the unknown setting '%s'", graph->images[i]->name,
-                              graph->images[i]->levels);
+            return lao__fault(text, size,
+                              "image '%s' counts its levels by the unknown setting '%s'",
+                              graph->images[i]->name, graph->images[i]->levels);
         }
     }
     for (i = 0; i < graph->pass_count; i++) {
         for (k = 0; k < i; k++) {
             if (strcmp(graph->passes[i]->name, graph->passes[k]->name) == 0) {
-                return lao__fault(text, size, "two passes are named '%s'%s", graph->passes[i]->name, "");
+                return lao__fault(text, size, "two passes are named '%s'%s", graph->passes[i]->name,
+                                  "");
             }
         }
     }
@@ -2015,40 +2276,46 @@ static int lao__check_names(const lao_graph *graph, char *text, size_t size) {
         const lao_module *module = graph->modules[m];
         for (i = 0; i < module->setting_count; i++) {
             if (lao_setting_find(module, module->settings[i].name) != (int)i) {
-                return lao__fault(text, size, "two settings of module '%s' are named '%s'", module->name,
-                                  module->settings[i].name);
+                return lao__fault(text, size, "two settings of module '%s' are named '%s'",
+                                  module->name, module->settings[i].name);
             }
         }
         if (module->setting_count > LAO__MOST_SETTINGS) {
-            return lao__fault(text, size, "module '%s' has more than 64 settings%s", module->name, "");
+            return lao__fault(text, size, "module '%s' has more than 64 settings%s", module->name,
+                              "");
         }
         for (i = 0; i < module->preset_count; i++) {
             int preset = lao_setting_find(module, "preset");
-            if (preset < 0 || lao__choice(module->settings[preset].choices, module->presets[i].preset,
-                                          strlen(module->presets[i].preset)) < 0) {
-                return lao__fault(text, size, "module '%s' has no preset '%s'", module->name, module->presets[i].preset);
+            if (preset < 0 ||
+                lao__choice(module->settings[preset].choices, module->presets[i].preset,
+                            strlen(module->presets[i].preset)) < 0) {
+                return lao__fault(text, size, "module '%s' has no preset '%s'", module->name,
+                                  module->presets[i].preset);
             }
             if (lao_setting_find(module, module->presets[i].setting) < 0) {
-                return lao__fault(text, size, "preset '%s' names the unknown setting '%s'", module->presets[i].preset,
-                                  module->presets[i].setting);
+                return lao__fault(text, size, "preset '%s' names the unknown setting '%s'",
+                                  module->presets[i].preset, module->presets[i].setting);
             }
         }
     }
     return 0;
 }
 
-static int lao__check_when(const lao_graph *graph, uint32_t module, const char *owner, const lao_when *when, char *text,
-                           size_t size) {
+static int lao__check_when(const lao_graph *graph, uint32_t module, const char *owner,
+                           const lao_when *when, char *text, size_t size) {
     if (!when->name) {
         return 0;
     }
     if (!when->compare || !strchr("=!<>", when->compare)) {
-        return lao__fault(text, size, "'%s' has a condition on '%s' without a comparison", owner, when->name);
+        return lao__fault(text, size, "'%s' has a condition on '%s' without a comparison", owner,
+                          when->name);
     }
     if (when->name[0] == LAO__IMPORT_MARK) {
         uint32_t image = lao__image_find(graph, when->name + 1);
-        return image == LAO_NO_INDEX ? lao__fault(text, size, "'%s' asks for the unknown image '%s'", owner, when->name + 1)
-                                     : 0;
+        return image == LAO_NO_INDEX
+                   ? lao__fault(text, size, "'%s' asks for the unknown image '%s'", owner,
+                                when->name + 1)
+                   : 0;
     }
     return lao__value_find(graph, module, when->name) == LAO_NO_INDEX
                ? lao__fault(text, size, "'%s' asks for the unknown setting '%s'", owner, when->name)
@@ -2056,14 +2323,17 @@ static int lao__check_when(const lao_graph *graph, uint32_t module, const char *
 }
 
 /* Whether two references of a row name one level in every turn. */
-static int lao__same_level(const lao_pass_row *row, const lao_reference *a, const lao_reference *b) {
+static int lao__same_level(const lao_pass_row *row, const lao_reference *a,
+                           const lao_reference *b) {
     int levels = row->repeat == LAO_REPEAT_LEVELS_UP || row->repeat == LAO_REPEAT_LEVELS_DOWN;
-    uint32_t i = a->level == LAO_LEVEL_INDEX ? a->level_index : 0, k = b->level == LAO_LEVEL_INDEX ? b->level_index : 0;
+    uint32_t i = a->level == LAO_LEVEL_INDEX ? a->level_index : 0,
+             k = b->level == LAO_LEVEL_INDEX ? b->level_index : 0;
     return a->level == b->level ? i == k : !levels && i == k;
 }
 
 /* Writes and reads of one row against everything written so far. */
-static int lao__check_row(const lao_graph *graph, uint32_t index, const lao_pass_row *row, char *text, size_t size) {
+static int lao__check_row(const lao_graph *graph, uint32_t index, const lao_pass_row *row,
+                          char *text, size_t size) {
     uint32_t r, w, p, end;
     for (r = 0; r < LAO_MAX_READS && row->reads[r].image; r++) {
         const lao_reference *read = &row->reads[r];
@@ -2071,24 +2341,30 @@ static int lao__check_row(const lao_graph *graph, uint32_t index, const lao_pass
         int written = 0;
         if (read->image[0] == LAO__BUFFER_MARK) {
             if (strcmp(read->image, "#points") != 0 && strcmp(read->image, "#colors") != 0) {
-                return lao__fault(text, size, "pass '%s' reads the unknown buffer '%s'", row->name, read->image);
+                return lao__fault(text, size, "pass '%s' reads the unknown buffer '%s'", row->name,
+                                  read->image);
             }
             continue;
         }
         image = lao__image_find(graph, read->image);
         if (image == LAO_NO_INDEX) {
-            return lao__fault(text, size, "pass '%s' reads the unknown image '%s'", row->name, read->image);
+            return lao__fault(text, size, "pass '%s' reads the unknown image '%s'", row->name,
+                              read->image);
         }
         for (w = 0; w < LAO_MAX_WRITES && row->writes[w].image; w++) {
             const lao_reference *write = &row->writes[w];
             if (strcmp(write->image, read->image) == 0) {
                 if (write->phase == read->phase && lao__same_level(row, write, read)) {
-                    return lao__fault(text, size, "pass '%s' reads what it writes: '%s'", row->name, read->image);
+                    return lao__fault(text, size, "pass '%s' reads what it writes: '%s'", row->name,
+                                      read->image);
                 }
             }
         }
-        if (read->phase == LAO_PHASE_PREVIOUS && !(graph->images[image]->flags & LAO_IMAGE_HISTORY)) {
-            return lao__fault(text, size, "pass '%s' reads the last frame's '%s', which is not kept", row->name, read->image);
+        if (read->phase == LAO_PHASE_PREVIOUS &&
+            !(graph->images[image]->flags & LAO_IMAGE_HISTORY)) {
+            return lao__fault(text, size,
+                              "pass '%s' reads the last frame's '%s', which is not kept", row->name,
+                              read->image);
         }
         written = (graph->images[image]->flags & LAO_IMAGE_IMPORT) != 0;
         end = read->phase == LAO_PHASE_PREVIOUS ? graph->pass_count : index + 1;
@@ -2097,11 +2373,13 @@ static int lao__check_row(const lao_graph *graph, uint32_t index, const lao_pass
             for (w = 0; w < LAO_MAX_WRITES && earlier->writes[w].image; w++) {
                 /* a repeated row may read what its earlier turn wrote */
                 written |= strcmp(earlier->writes[w].image, read->image) == 0 &&
-                           (p != index || row->repeat == LAO_REPEAT_LEVELS_DOWN || read->phase == LAO_PHASE_PREVIOUS);
+                           (p != index || row->repeat == LAO_REPEAT_LEVELS_DOWN ||
+                            read->phase == LAO_PHASE_PREVIOUS);
             }
         }
         if (!written) {
-            return lao__fault(text, size, "pass '%s' reads '%s', which nothing has written", row->name, read->image);
+            return lao__fault(text, size, "pass '%s' reads '%s', which nothing has written",
+                              row->name, read->image);
         }
     }
     return 0;
@@ -2113,7 +2391,8 @@ static int lao__row_is_used(const lao_graph *graph, uint32_t index) {
     uint32_t w, p, r;
     for (w = 0; w < LAO_MAX_WRITES && row->writes[w].image; w++) {
         uint32_t image = lao__image_find(graph, row->writes[w].image);
-        if (image != LAO_NO_INDEX && (graph->images[image]->flags & (LAO_IMAGE_IMPORT | LAO_IMAGE_HISTORY))) {
+        if (image != LAO_NO_INDEX &&
+            (graph->images[image]->flags & (LAO_IMAGE_IMPORT | LAO_IMAGE_HISTORY))) {
             return 1;
         }
         for (p = index; p < graph->pass_count; p++) {
@@ -2127,7 +2406,8 @@ static int lao__row_is_used(const lao_graph *graph, uint32_t index) {
     return 0;
 }
 
-int lao_graph_check(const lao_graph *graph, const lao_shader *shaders, uint32_t shader_count, char *text, size_t text_size) {
+int lao_graph_check(const lao_graph *graph, const lao_shader *shaders, uint32_t shader_count,
+                    char *text, size_t text_size) {
     uint32_t i, k, m, used;
     if (lao__check_names(graph, text, text_size) != 0) {
         return -1;
@@ -2140,8 +2420,8 @@ int lao_graph_check(const lao_graph *graph, const lao_shader *shaders, uint32_t 
         }
         for (k = 0; k < LAO_MAX_WRITES && row->writes[k].image; k++) {
             if (lao__image_find(graph, row->writes[k].image) == LAO_NO_INDEX) {
-                return lao__fault(text, text_size, "pass '%s' writes the unknown image '%s'", row->name,
-                                  row->writes[k].image);
+                return lao__fault(text, text_size, "pass '%s' writes the unknown image '%s'",
+                                  row->name, row->writes[k].image);
             }
         }
         for (k = 0; k < LAO_MAX_CONDITIONS; k++) {
@@ -2150,14 +2430,17 @@ int lao_graph_check(const lao_graph *graph, const lao_shader *shaders, uint32_t 
             }
         }
         if (row->repeat == LAO_REPEAT_COUNT &&
-            (!row->repeat_setting || lao__value_find(graph, m, row->repeat_setting) == LAO_NO_INDEX)) {
-            return lao__fault(text, text_size, "pass '%s' repeats by an unknown setting%s", row->name, "");
+            (!row->repeat_setting ||
+             lao__value_find(graph, m, row->repeat_setting) == LAO_NO_INDEX)) {
+            return lao__fault(text, text_size, "pass '%s' repeats by an unknown setting%s",
+                              row->name, "");
         }
         if (lao__check_row(graph, i, row, text, text_size) != 0) {
             return -1;
         }
         if (!lao__row_is_used(graph, i)) {
-            return lao__fault(text, text_size, "nothing uses what pass '%s' writes%s", row->name, "");
+            return lao__fault(text, text_size, "nothing uses what pass '%s' writes%s", row->name,
+                              "");
         }
         for (k = 0; shaders && k < shader_count && strcmp(shaders[k].name, row->shader) != 0; k++) {
         }
@@ -2166,7 +2449,8 @@ int lao_graph_check(const lao_graph *graph, const lao_shader *shaders, uint32_t 
             used |= strcmp(graph->modules[m]->shaders[k].name, row->shader) == 0;
         }
         if (shaders && !used) {
-            return lao__fault(text, text_size, "pass '%s' has no shader '%s'", row->name, row->shader);
+            return lao__fault(text, text_size, "pass '%s' has no shader '%s'", row->name,
+                              row->shader);
         }
     }
     for (i = 0; i < graph->image_count; i++) {
@@ -2179,38 +2463,44 @@ int lao_graph_check(const lao_graph *graph, const lao_shader *shaders, uint32_t 
             }
         }
         if (!used) {
-            return lao__fault(text, text_size, "no pass uses image '%s'%s", graph->images[i]->name, "");
+            return lao__fault(text, text_size, "no pass uses image '%s'%s", graph->images[i]->name,
+                              "");
         }
-        if (lao__check_when(graph, 0, graph->images[i]->name, &graph->images[i]->when, text, text_size) != 0) {
+        if (lao__check_when(graph, 0, graph->images[i]->name, &graph->images[i]->when, text,
+                            text_size) != 0) {
             return -1;
         }
     }
     return 0;
 }
 
-void lao_graph_print(const lao_module *const *modules, uint32_t module_count, void (*write)(void *user, const char *text),
-                     void *user) {
+void lao_graph_print(const lao_module *const *modules, uint32_t module_count,
+                     void (*write)(void *user, const char *text), void *user) {
     char line[256];
     uint32_t m, i, k;
     write(user, "digraph lineao {\n    rankdir=LR;\n    node [fontname=\"sans-serif\"];\n");
     for (m = 0; m < module_count; m++) {
         for (i = 0; i < modules[m]->image_count; i++) {
-            snprintf(line, sizeof line, "    \"%s\" [shape=ellipse%s];\n", modules[m]->images[i].name,
+            snprintf(line, sizeof line, "    \"%s\" [shape=ellipse%s];\n",
+                     modules[m]->images[i].name,
                      modules[m]->images[i].flags & LAO_IMAGE_IMPORT ? ", style=dashed" : "");
             write(user, line);
         }
         for (i = 0; i < modules[m]->pass_count; i++) {
             const lao_pass_row *row = &modules[m]->passes[i];
-            snprintf(line, sizeof line, "    \"pass %s\" [shape=box, label=\"%s\"];\n", row->name, row->name);
+            snprintf(line, sizeof line, "    \"pass %s\" [shape=box, label=\"%s\"];\n", row->name,
+                     row->name);
             write(user, line);
             for (k = 0; k < LAO_MAX_READS && row->reads[k].image; k++) {
                 if (k == 0 || strcmp(row->reads[k].image, row->reads[k - 1].image) != 0) {
-                    snprintf(line, sizeof line, "    \"%s\" -> \"pass %s\";\n", row->reads[k].image, row->name);
+                    snprintf(line, sizeof line, "    \"%s\" -> \"pass %s\";\n", row->reads[k].image,
+                             row->name);
                     write(user, line);
                 }
             }
             for (k = 0; k < LAO_MAX_WRITES && row->writes[k].image; k++) {
-                snprintf(line, sizeof line, "    \"pass %s\" -> \"%s\";\n", row->name, row->writes[k].image);
+                snprintf(line, sizeof line, "    \"pass %s\" -> \"%s\";\n", row->name,
+                         row->writes[k].image);
                 write(user, line);
             }
         }
@@ -2218,7 +2508,8 @@ void lao_graph_print(const lao_module *const *modules, uint32_t module_count, vo
     write(user, "}\n");
 }
 
-/* ================================================================================================================ plan */
+/* ================================================================================================================
+ * plan */
 
 typedef struct lao__planner {
     const lao_graph *graph;
@@ -2266,22 +2557,27 @@ static int lao__holds(const lao__planner *p, uint32_t module, uint32_t set, cons
     if (when->name[0] == LAO__IMPORT_MARK) {
         uint32_t import = lao__import_find(p->desc, when->name + 1);
         value = import == LAO_NO_INDEX ? 0.0f : 1.0f;
-        if (import < p->desc->import_count && (p->desc->imports[import].source.flags & LAO_HOST_WRITABLE)) {
+        if (import < p->desc->import_count &&
+            (p->desc->imports[import].source.flags & LAO_HOST_WRITABLE)) {
             value = 2.0f;
         }
     } else {
         value = lao__value(p, module, set, when->name);
     }
     switch (when->compare) {
-    case '=': return value == when->value;
-    case '!': return value != when->value;
-    case '<': return value < when->value;
-    default: return value > when->value;
+    case '=':
+        return value == when->value;
+    case '!':
+        return value != when->value;
+    case '<':
+        return value < when->value;
+    default:
+        return value > when->value;
     }
 }
 
-static void lao__level_size(const lao__planner *p, const lao_image_row *row, uint32_t level, uint32_t *width,
-                            uint32_t *height) {
+static void lao__level_size(const lao__planner *p, const lao_image_row *row, uint32_t level,
+                            uint32_t *width, uint32_t *height) {
     uint32_t w = row->size == LAO_SIZE_FIXED ? row->width : p->desc->width;
     uint32_t h = row->size == LAO_SIZE_FIXED ? row->height : p->desc->height;
     if (row->size == LAO_SIZE_FULL) {
@@ -2296,7 +2592,8 @@ static void lao__level_size(const lao__planner *p, const lao_image_row *row, uin
     *height = h;
 }
 
-static uint32_t lao__level_count(const lao__planner *p, uint32_t module, uint32_t set, const lao_image_row *row) {
+static uint32_t lao__level_count(const lao__planner *p, uint32_t module, uint32_t set,
+                                 const lao_image_row *row) {
     uint32_t w, h, n = 1;
     if (!row->levels) {
         return 1;
@@ -2324,8 +2621,8 @@ static uint32_t lao__instance(lao__planner *p, uint32_t image, uint32_t level, u
             return i;
         }
     }
-    if (lao__grow(&p->allocator, (void **)&plan->instances, plan->instance_count, &plan->instance_capacity,
-                  sizeof *plan->instances) != 0) {
+    if (lao__grow(&p->allocator, (void **)&plan->instances, plan->instance_count,
+                  &plan->instance_capacity, sizeof *plan->instances) != 0) {
         p->failed = 1;
         return LAO_NO_INDEX;
     }
@@ -2342,8 +2639,10 @@ static uint32_t lao__instance(lao__planner *p, uint32_t image, uint32_t level, u
     return plan->instance_count++;
 }
 
-/* Resolves a reference of a row; LAO_NO_INDEX when its image does not exist under these settings. */
-static uint32_t lao__resolve(lao__planner *p, const lao_plan_step *step, const lao_reference *reference) {
+/* Resolves a reference of a row; LAO_NO_INDEX when its image does not exist under these settings.
+ */
+static uint32_t lao__resolve(lao__planner *p, const lao_plan_step *step,
+                             const lao_reference *reference) {
     uint32_t image, level = 0, last, phase = 0, i;
     const lao_image_row *row;
     if (reference->image[0] == LAO__BUFFER_MARK) {
@@ -2356,10 +2655,18 @@ static uint32_t lao__resolve(lao__planner *p, const lao_plan_step *step, const l
     }
     last = lao__level_count(p, step->module, step->set, row) - 1;
     switch (reference->level) {
-    case LAO_LEVEL_SAME: level = step->level; break;
-    case LAO_LEVEL_FINER: level = step->level - 1; break;
-    case LAO_LEVEL_COARSER: level = step->level + 1; break;
-    case LAO_LEVEL_INDEX: level = reference->level_index; break;
+    case LAO_LEVEL_SAME:
+        level = step->level;
+        break;
+    case LAO_LEVEL_FINER:
+        level = step->level - 1;
+        break;
+    case LAO_LEVEL_COARSER:
+        level = step->level + 1;
+        break;
+    case LAO_LEVEL_INDEX:
+        level = reference->level_index;
+        break;
     }
     level = level > last ? last : level;
     phase = reference->phase == LAO_PHASE_THIS ? p->phase[image] : (uint32_t)!p->phase[image];
@@ -2378,8 +2685,10 @@ static uint32_t lao__resolve(lao__planner *p, const lao_plan_step *step, const l
 static int lao__imported_away(const lao__planner *p, const lao_pass_row *row) {
     uint32_t w, produced = 0;
     for (w = 0; w < LAO_MAX_WRITES && row->writes[w].image; w++) {
-        const lao_image_row *image = p->graph->images[lao__image_find(p->graph, row->writes[w].image)];
-        if (!(image->flags & LAO_IMAGE_IMPORT) && lao__import_find(p->desc, image->name) != LAO_NO_INDEX) {
+        const lao_image_row *image =
+            p->graph->images[lao__image_find(p->graph, row->writes[w].image)];
+        if (!(image->flags & LAO_IMAGE_IMPORT) &&
+            lao__import_find(p->desc, image->name) != LAO_NO_INDEX) {
             produced++;
         }
     }
@@ -2407,7 +2716,8 @@ static void lao__step_write(lao__planner *p, lao_plan_step *step, const lao_refe
     uint32_t image = lao__image_find(p->graph, reference->image);
     const lao_image_row *row = p->graph->images[image];
     lao_plan_write write;
-    int is_depth = row->format == LAO_FORMAT_D32F || (row->format == LAO_FORMAT_HOST && step->row->depth != LAO_DEPTH_NONE);
+    int is_depth = row->format == LAO_FORMAT_D32F ||
+                   (row->format == LAO_FORMAT_HOST && step->row->depth != LAO_DEPTH_NONE);
     memset(&write, 0, sizeof write);
     write.instance = instance;
     memcpy(write.value, row->clear, sizeof write.value);
@@ -2416,7 +2726,9 @@ static void lao__step_write(lao__planner *p, lao_plan_step *step, const lao_refe
     }
     write.clear = reference->load == LAO_LOAD_DISCARD ? 2 : reference->load == LAO_LOAD_CLEAR;
     if (reference->load == LAO_LOAD_KEEP && !(row->flags & LAO_IMAGE_IMPORT)) {
-        write.clear = instance != LAO_NO_INDEX && lao__is_written(p->plan, instance, p->plan->step_count) ? 0 : 1;
+        write.clear =
+            instance != LAO_NO_INDEX && lao__is_written(p->plan, instance, p->plan->step_count) ? 0
+                                                                                                : 1;
     }
     if (is_depth) {
         step->depth = write;
@@ -2437,12 +2749,14 @@ static void lao__step_constants(const lao__planner *p, lao_plan_step *step) {
     }
 }
 
-static void lao__step_add(lao__planner *p, uint32_t pass, uint32_t set, uint32_t level, uint32_t iteration) {
+static void lao__step_add(lao__planner *p, uint32_t pass, uint32_t set, uint32_t level,
+                          uint32_t iteration) {
     const lao_pass_row *row = p->graph->passes[pass];
     lao_plan *plan = p->plan;
     lao_plan_step *step;
     uint32_t i;
-    if (lao__grow(&p->allocator, (void **)&plan->steps, plan->step_count, &plan->step_capacity, sizeof *plan->steps) != 0) {
+    if (lao__grow(&p->allocator, (void **)&plan->steps, plan->step_count, &plan->step_capacity,
+                  sizeof *plan->steps) != 0) {
         p->failed = 1;
         return;
     }
@@ -2455,7 +2769,8 @@ static void lao__step_add(lao__planner *p, uint32_t pass, uint32_t set, uint32_t
     step->level = level;
     step->iteration = iteration;
     step->depth.instance = LAO_NO_INDEX;
-    for (step->shader = 0; strcmp(p->graph->shader_names[step->shader], row->shader) != 0; step->shader++) {
+    for (step->shader = 0; strcmp(p->graph->shader_names[step->shader], row->shader) != 0;
+         step->shader++) {
     }
     for (i = 0; i < LAO_MAX_READS && row->reads[i].image; i++) {
         step->reads[i] = lao__resolve(p, step, &row->reads[i]);
@@ -2497,7 +2812,9 @@ static void lao__plan_pass(lao__planner *p, uint32_t pass, uint32_t set) {
         return;
     }
     switch (row->repeat) {
-    case LAO_REPEAT_NONE: lao__step_add(p, pass, set, 0, 0); break;
+    case LAO_REPEAT_NONE:
+        lao__step_add(p, pass, set, 0, 0);
+        break;
     case LAO_REPEAT_LEVELS_UP:
         n = lao__level_count(p, module, set, first);
         for (i = 1; i < n; i++) {
@@ -2532,12 +2849,14 @@ static void lao__plan_slots(lao__planner *p) {
         }
         for (s = 0; share && !history && s < plan->slot_count; s++) {
             lao_plan_slot *slot = &plan->slots[s];
-            int fits = slot->format == instance->format && slot->width == instance->width && slot->height == instance->height;
+            int fits = slot->format == instance->format && slot->width == instance->width &&
+                       slot->height == instance->height;
             for (k = 0; fits && k < i; k++) {
                 const lao_plan_instance *other = &plan->instances[k];
                 if (other->slot[0] == s || other->slot[1] == s) {
                     fits = !(p->graph->images[other->image]->flags & LAO_IMAGE_HISTORY) &&
-                           (other->last_step < instance->first_step || instance->last_step < other->first_step);
+                           (other->last_step < instance->first_step ||
+                            instance->last_step < other->first_step);
                 }
             }
             if (fits) {
@@ -2546,7 +2865,8 @@ static void lao__plan_slots(lao__planner *p) {
         }
         if (!share || history || s == plan->slot_count) {
             s = plan->slot_count;
-            if (lao__grow(&p->allocator, (void **)&plan->slots, s, &plan->slot_capacity, sizeof *plan->slots) != 0) {
+            if (lao__grow(&p->allocator, (void **)&plan->slots, s, &plan->slot_capacity,
+                          sizeof *plan->slots) != 0) {
                 p->failed = 1;
                 return;
             }
@@ -2571,7 +2891,8 @@ static void lao__plan_slots(lao__planner *p) {
     }
 }
 
-static void lao__barrier(lao__planner *p, uint8_t *state, uint32_t instance, lao_access after, int discard) {
+static void lao__barrier(lao__planner *p, uint8_t *state, uint32_t instance, lao_access after,
+                         int discard) {
     lao_plan *plan = p->plan;
     const lao_plan_instance *i = &plan->instances[instance];
     /* imports are tracked behind the slots, one entry per instance */
@@ -2580,8 +2901,8 @@ static void lao__barrier(lao__planner *p, uint8_t *state, uint32_t instance, lao
     if (*before == (uint8_t)after && after == LAO_ACCESS_SAMPLE) {
         return;
     }
-    if (lao__grow(&p->allocator, (void **)&plan->barriers, plan->barrier_count, &plan->barrier_capacity,
-                  sizeof *plan->barriers) != 0) {
+    if (lao__grow(&p->allocator, (void **)&plan->barriers, plan->barrier_count,
+                  &plan->barrier_capacity, sizeof *plan->barriers) != 0) {
         p->failed = 1;
         return;
     }
@@ -2611,7 +2932,8 @@ static void lao__plan_barriers(lao__planner *p) {
         }
         for (i = 0; i < step->color_count; i++) {
             if (step->colors[i].instance != LAO_NO_INDEX) {
-                lao__barrier(p, state, step->colors[i].instance, LAO_ACCESS_COLOR, step->colors[i].clear != 0);
+                lao__barrier(p, state, step->colors[i].instance, LAO_ACCESS_COLOR,
+                             step->colors[i].clear != 0);
             }
         }
         if (step->depth.instance != LAO_NO_INDEX) {
@@ -2642,7 +2964,8 @@ static void lao__plan_usage(lao_plan *plan) {
     }
 }
 
-lao_result lao_plan_make(const lao_graph *graph, const lao_plan_desc *desc, const lao_allocator *allocator, lao_plan *plan) {
+lao_result lao_plan_make(const lao_graph *graph, const lao_plan_desc *desc,
+                         const lao_allocator *allocator, lao_plan *plan) {
     lao__planner p;
     uint32_t pass, end, set, i;
     memset(&p, 0, sizeof p);
@@ -2707,8 +3030,8 @@ static void lao__print_instance(const lao_graph *graph, const lao_plan *plan, ui
     write(user, text);
 }
 
-static void lao__print_barriers(const lao_graph *graph, const lao_plan *plan, uint32_t first, uint32_t end,
-                                void (*write)(void *, const char *), void *user) {
+static void lao__print_barriers(const lao_graph *graph, const lao_plan *plan, uint32_t first,
+                                uint32_t end, void (*write)(void *, const char *), void *user) {
     static const char *const name[] = {"none", "sample", "color", "depth"};
     char text[64];
     for (; first < end; first++) {
@@ -2721,15 +3044,18 @@ static void lao__print_barriers(const lao_graph *graph, const lao_plan *plan, ui
     }
 }
 
-void lao_plan_print(const lao_graph *graph, const lao_plan *plan, void (*write)(void *user, const char *text), void *user) {
+void lao_plan_print(const lao_graph *graph, const lao_plan *plan,
+                    void (*write)(void *user, const char *text), void *user) {
     static const char *const clear[] = {"", " clear", " discard"};
     char text[160];
     uint32_t s, i;
     for (s = 0; s < plan->step_count; s++) {
         const lao_plan_step *step = &plan->steps[s];
-        lao__print_barriers(graph, plan, step->barrier_first, step->barrier_first + step->barrier_count, write, user);
-        snprintf(text, sizeof text, "step %u %s set %u level %u turn %u %ux%u reads", s, step->row->name, step->set,
-                 step->level, step->iteration, step->width, step->height);
+        lao__print_barriers(graph, plan, step->barrier_first,
+                            step->barrier_first + step->barrier_count, write, user);
+        snprintf(text, sizeof text, "step %u %s set %u level %u turn %u %ux%u reads", s,
+                 step->row->name, step->set, step->level, step->iteration, step->width,
+                 step->height);
         write(user, text);
         for (i = 0; i < step->read_count; i++) {
             lao__print_instance(graph, plan, step->reads[i], write, user);
@@ -2748,7 +3074,8 @@ void lao_plan_print(const lao_graph *graph, const lao_plan *plan, void (*write)(
     lao__print_barriers(graph, plan, plan->end_barrier_first, plan->barrier_count, write, user);
 }
 
-/* ============================================================================================================= context */
+/* =============================================================================================================
+ * context */
 
 typedef struct lao__lines {
     lao_chunk *chunks;
@@ -2835,7 +3162,8 @@ static uint32_t lao__handle_add(const lao_allocator *allocator, lao__pool *pool,
     }
     if (i == pool->count) {
         if (i >= (1u << LAO__INDEX_BITS) - 1 ||
-            lao__grow(allocator, (void **)&pool->handles, pool->count, &pool->capacity, sizeof *pool->handles) != 0) {
+            lao__grow(allocator, (void **)&pool->handles, pool->count, &pool->capacity,
+                      sizeof *pool->handles) != 0) {
             return 0;
         }
         pool->handles[i].generation = 0;
@@ -2848,7 +3176,8 @@ static uint32_t lao__handle_add(const lao_allocator *allocator, lao__pool *pool,
 
 static lao__handle *lao__handle_get(lao__pool *pool, uint32_t id) {
     uint32_t i = (id & ((1u << LAO__INDEX_BITS) - 1)) - 1;
-    if (id == 0 || i >= pool->count || !pool->handles[i].object || pool->handles[i].generation != id >> LAO__INDEX_BITS) {
+    if (id == 0 || i >= pool->count || !pool->handles[i].object ||
+        pool->handles[i].generation != id >> LAO__INDEX_BITS) {
         return NULL;
     }
     return &pool->handles[i];
@@ -2858,7 +3187,8 @@ static lao__handle *lao__handle_get(lao__pool *pool, uint32_t id) {
 
 static lao_result lao__shaders_find(lao_context *context) {
     uint32_t i, k, m;
-    context->shaders = (const lao_shader **)lao__new(&context->allocator, context->graph.pass_count, sizeof *context->shaders);
+    context->shaders = (const lao_shader **)lao__new(&context->allocator, context->graph.pass_count,
+                                                     sizeof *context->shaders);
     if (!context->shaders) {
         return lao__fail(context, LAO_LOG_CONTEXT_MEMORY, NULL);
     }
@@ -2894,7 +3224,8 @@ static lao_result lao__graph_open(lao_context *context, const lao_desc *desc) {
     for (m = 0; m < desc->module_count; m++) {
         modules[m + 1] = desc->modules[m];
     }
-    if (lao_graph_make(modules, desc->module_count + 1, &context->allocator, &context->graph) != LAO_OK) {
+    if (lao_graph_make(modules, desc->module_count + 1, &context->allocator, &context->graph) !=
+        LAO_OK) {
         return lao__fail(context, LAO_LOG_CONTEXT_MEMORY, NULL);
     }
     if (lao_graph_check(&context->graph, NULL, 0, text, sizeof text) != 0) {
@@ -2968,9 +3299,11 @@ static void lao__lines_clear(lao_context *context, lao__lines *lines) {
 
 static void lao__view_frames_free(lao_context *context, lao__view *view) {
     uint32_t n = view->set_capacity, modules = context->graph.module_count;
-    lao__delete(&context->allocator, view->values, (size_t)n * context->value_count, sizeof *view->values);
+    lao__delete(&context->allocator, view->values, (size_t)n * context->value_count,
+                sizeof *view->values);
     lao__delete(&context->allocator, (void *)view->value_rows, n, sizeof *view->value_rows);
-    lao__delete(&context->allocator, view->uniforms, (size_t)n * modules * context->host.settings_size, 1);
+    lao__delete(&context->allocator, view->uniforms,
+                (size_t)n * modules * context->host.settings_size, 1);
     lao__delete(&context->allocator, view->draws, n, sizeof *view->draws);
     view->values = NULL;
     view->value_rows = NULL;
@@ -3002,32 +3335,39 @@ void lao_destroy(lao_context *context) {
     for (i = 0; i < context->lines.count; i++) {
         if (context->lines.handles[i].object) {
             lao__lines_clear(context, (lao__lines *)context->lines.handles[i].object);
-            lao__delete(&context->allocator, context->lines.handles[i].object, 1, sizeof(lao__lines));
+            lao__delete(&context->allocator, context->lines.handles[i].object, 1,
+                        sizeof(lao__lines));
         }
     }
     if (context->self) {
         context->backend.detach(context->self);
     }
-    lao__delete(&context->allocator, context->views.handles, context->views.capacity, sizeof *context->views.handles);
-    lao__delete(&context->allocator, context->lines.handles, context->lines.capacity, sizeof *context->lines.handles);
-    lao__delete(&context->allocator, (void *)context->shaders, context->graph.pass_count, sizeof *context->shaders);
+    lao__delete(&context->allocator, context->views.handles, context->views.capacity,
+                sizeof *context->views.handles);
+    lao__delete(&context->allocator, context->lines.handles, context->lines.capacity,
+                sizeof *context->lines.handles);
+    lao__delete(&context->allocator, (void *)context->shaders, context->graph.pass_count,
+                sizeof *context->shaders);
     lao_graph_free(&context->allocator, &context->graph);
     allocator = context->allocator;
     lao__delete(&allocator, context, 1, sizeof *context);
 }
 
-/* =============================================================================================================== lines */
+/* ===============================================================================================================
+ * lines */
 
-/* Texels of a line set as the vertex stage wants them: each run of points between two ghosts, so that the neighbours of a
-   segment's ends are always one texel away. A ghost repeats the end point (no neighbour) or, in a closed line, the point
-   beyond the seam. With points NULL the walk only counts. */
+/* Texels of a line set as the vertex stage wants them: each run of points between two ghosts, so
+   that the neighbours of a segment's ends are always one texel away. A ghost repeats the end point
+   (no neighbour) or, in a closed line, the point beyond the seam. With points NULL the walk only
+   counts. */
 typedef struct lao__texels {
     float *points;   /* x, y, z, time */
     uint8_t *colors; /* RGBA */
     uint64_t count;
 } lao__texels;
 
-static void lao__texel(lao__texels *out, const lao_lines_desc *desc, uint32_t position, uint32_t attribute, int ghost) {
+static void lao__texel(lao__texels *out, const lao_lines_desc *desc, uint32_t position,
+                       uint32_t attribute, int ghost) {
     if (out->points) {
         float *p = out->points + 4 * out->count;
         uint8_t *c = out->colors + 4 * out->count;
@@ -3048,7 +3388,8 @@ static void lao__texel(lao__texels *out, const lao_lines_desc *desc, uint32_t po
 }
 
 static int lao__same_point(const lao_lines_desc *desc, uint32_t a, uint32_t b) {
-    return memcmp(desc->points + 3 * (size_t)a, desc->points + 3 * (size_t)b, 3 * sizeof(float)) == 0;
+    return memcmp(desc->points + 3 * (size_t)a, desc->points + 3 * (size_t)b, 3 * sizeof(float)) ==
+           0;
 }
 
 /* One run of finite points [first, end). */
@@ -3091,7 +3432,8 @@ static void lao__lines_walk(lao__texels *out, const lao_lines_desc *desc, const 
     }
 }
 
-static lao_result lao__lines_check(lao_context *context, const lao_lines_desc *desc, const uint32_t *offsets) {
+static lao_result lao__lines_check(lao_context *context, const lao_lines_desc *desc,
+                                   const uint32_t *offsets) {
     uint32_t i;
     char text[96];
     if (desc->point_count > 0 && desc->line_count > 0 && !desc->points) {
@@ -3104,14 +3446,15 @@ static lao_result lao__lines_check(lao_context *context, const lao_lines_desc *d
         return LAO_OK;
     }
     for (i = 0; i <= desc->line_count; i++) {
-        if ((i == 0 && offsets[0] != 0) || (i > 0 && offsets[i] < offsets[i - 1]) || offsets[i] > desc->point_count) {
+        if ((i == 0 && offsets[0] != 0) || (i > 0 && offsets[i] < offsets[i - 1]) ||
+            offsets[i] > desc->point_count) {
             snprintf(text, sizeof text, "offsets[%u] = %u", i, offsets[i]);
             return lao__fail(context, LAO_LOG_LINES_OFFSETS, text);
         }
     }
     if (offsets[desc->line_count] != desc->point_count) {
-        snprintf(text, sizeof text, "offsets[%u] = %u, point_count = %u", desc->line_count, offsets[desc->line_count],
-                 desc->point_count);
+        snprintf(text, sizeof text, "offsets[%u] = %u, point_count = %u", desc->line_count,
+                 offsets[desc->line_count], desc->point_count);
         return lao__fail(context, LAO_LOG_LINES_OFFSETS, text);
     }
     return LAO_OK;
@@ -3131,8 +3474,8 @@ static void lao__lines_box(lao__lines *lines, const lao_lines_desc *desc) {
     }
 }
 
-static lao_result lao__chunk_make(lao_context *context, lao_chunk *chunk, const lao__texels *texels, uint64_t first,
-                                  uint32_t count) {
+static lao_result lao__chunk_make(lao_context *context, lao_chunk *chunk, const lao__texels *texels,
+                                  uint64_t first, uint32_t count) {
     lao_buffer_desc buffer;
     lao_result result;
     buffer.texel_count = count;
@@ -3148,8 +3491,10 @@ static lao_result lao__chunk_make(lao_context *context, lao_chunk *chunk, const 
     return result;
 }
 
-/* Buffers of at most max_buffer_texels; a chunk begins 3 texels before the last one's end, where its segments end. */
-static lao_result lao__lines_upload(lao_context *context, const lao__texels *texels, lao__lines *lines) {
+/* Buffers of at most max_buffer_texels; a chunk begins 3 texels before the last one's end, where
+ * its segments end. */
+static lao_result lao__lines_upload(lao_context *context, const lao__texels *texels,
+                                    lao__lines *lines) {
     uint64_t most = context->caps.max_buffer_texels, first, segments;
     lao_result result = LAO_OK;
     uint32_t i;
@@ -3159,7 +3504,8 @@ static lao_result lao__lines_upload(lao_context *context, const lao__texels *tex
     }
     segments = texels->count - 3;
     lines->chunk_count = (uint32_t)((segments + most - 4) / (most - 3));
-    lines->chunks = (lao_chunk *)lao__new(&context->allocator, lines->chunk_count, sizeof *lines->chunks);
+    lines->chunks =
+        (lao_chunk *)lao__new(&context->allocator, lines->chunk_count, sizeof *lines->chunks);
     if (!lines->chunks) {
         lines->chunk_count = 0;
         return lao__fail(context, LAO_LOG_LINES_MEMORY, NULL);
@@ -3172,7 +3518,8 @@ static lao_result lao__lines_upload(lao_context *context, const lao__texels *tex
     return result;
 }
 
-static lao_result lao__lines_fill(lao_context *context, const lao_lines_desc *desc, lao__lines *lines) {
+static lao_result lao__lines_fill(lao_context *context, const lao_lines_desc *desc,
+                                  lao__lines *lines) {
     uint32_t whole[2];
     const uint32_t *offsets = desc->offsets;
     lao__texels texels;
@@ -3218,7 +3565,8 @@ lao_result lao_lines_create(lao_context *context, const lao_lines_desc *desc, la
     lao_result result;
     uint32_t id;
     if (!context || !desc || !lines) {
-        return context ? lao__fail(context, LAO_LOG_NULL_ARGUMENT, "lao_lines_create") : LAO_ERROR_INVALID_ARGUMENT;
+        return context ? lao__fail(context, LAO_LOG_NULL_ARGUMENT, "lao_lines_create")
+                       : LAO_ERROR_INVALID_ARGUMENT;
     }
     object = (lao__lines *)lao__new(&context->allocator, 1, sizeof *object);
     if (!object) {
@@ -3247,7 +3595,8 @@ lao_result lao_lines_update(lao_context *context, lao_lines lines, const lao_lin
     lao__lines *object, fresh;
     lao_result result;
     if (!context || !desc) {
-        return context ? lao__fail(context, LAO_LOG_NULL_ARGUMENT, "lao_lines_update") : LAO_ERROR_INVALID_ARGUMENT;
+        return context ? lao__fail(context, LAO_LOG_NULL_ARGUMENT, "lao_lines_update")
+                       : LAO_ERROR_INVALID_ARGUMENT;
     }
     object = lao__lines_get(context, lines);
     if (!object) {
@@ -3279,7 +3628,8 @@ lao_result lao_lines_destroy(lao_context *context, lao_lines lines) {
 lao_result lao_lines_bounds(lao_context *context, lao_lines lines, float bounds[2][3]) {
     lao__lines *object;
     if (!context || !bounds) {
-        return context ? lao__fail(context, LAO_LOG_NULL_ARGUMENT, "lao_lines_bounds") : LAO_ERROR_INVALID_ARGUMENT;
+        return context ? lao__fail(context, LAO_LOG_NULL_ARGUMENT, "lao_lines_bounds")
+                       : LAO_ERROR_INVALID_ARGUMENT;
     }
     object = lao__lines_get(context, lines);
     if (!object) {
@@ -3289,7 +3639,8 @@ lao_result lao_lines_bounds(lao_context *context, lao_lines lines, float bounds[
     return LAO_OK;
 }
 
-/* =============================================================================================================== views */
+/* ===============================================================================================================
+ * views */
 
 static lao__view *lao__view_get(lao_context *context, lao_view view) {
     lao__handle *handle = lao__handle_get(&context->views, view.id);
@@ -3297,7 +3648,8 @@ static lao__view *lao__view_get(lao_context *context, lao_view view) {
 }
 
 static int lao__view_size_ok(const lao_context *context, uint32_t width, uint32_t height) {
-    return width > 0 && height > 0 && width <= context->caps.max_image_size && height <= context->caps.max_image_size;
+    return width > 0 && height > 0 && width <= context->caps.max_image_size &&
+           height <= context->caps.max_image_size;
 }
 
 lao_result lao_view_create(lao_context *context, const lao_view_desc *desc, lao_view *view) {
@@ -3305,7 +3657,8 @@ lao_result lao_view_create(lao_context *context, const lao_view_desc *desc, lao_
     lao_result result;
     uint32_t id = 0;
     if (!context || !desc || !view) {
-        return context ? lao__fail(context, LAO_LOG_NULL_ARGUMENT, "lao_view_create") : LAO_ERROR_INVALID_ARGUMENT;
+        return context ? lao__fail(context, LAO_LOG_NULL_ARGUMENT, "lao_view_create")
+                       : LAO_ERROR_INVALID_ARGUMENT;
     }
     if (!lao__view_size_ok(context, desc->width, desc->height)) {
         return lao__fail(context, LAO_LOG_VIEW_SIZE, "lao_view_create");
@@ -3361,7 +3714,8 @@ lao_result lao_view_destroy(lao_context *context, lao_view view) {
     return LAO_OK;
 }
 
-/* ============================================================================================================== frames */
+/* ==============================================================================================================
+ * frames */
 
 static lao_result lao__view_reserve(lao_context *context, lao__view *view, uint32_t sets) {
     if (sets <= view->set_capacity) {
@@ -3370,10 +3724,13 @@ static lao_result lao__view_reserve(lao_context *context, lao__view *view, uint3
     lao__view_frames_free(context, view);
     view->prepared = 0;
     view->set_capacity = sets;
-    view->values = (float *)lao__new(&context->allocator, (size_t)sets * context->value_count, sizeof *view->values);
-    view->value_rows = (const float **)lao__new(&context->allocator, sets, sizeof *view->value_rows);
-    view->uniforms = (uint8_t *)lao__new(&context->allocator,
-                                         (size_t)sets * context->graph.module_count * context->host.settings_size, 1);
+    view->values = (float *)lao__new(&context->allocator, (size_t)sets * context->value_count,
+                                     sizeof *view->values);
+    view->value_rows =
+        (const float **)lao__new(&context->allocator, sets, sizeof *view->value_rows);
+    view->uniforms = (uint8_t *)lao__new(
+        &context->allocator,
+        (size_t)sets * context->graph.module_count * context->host.settings_size, 1);
     view->draws = (lao_draw *)lao__new(&context->allocator, sets, sizeof *view->draws);
     if (!view->values || !view->value_rows || !view->uniforms || !view->draws) {
         lao__view_frames_free(context, view);
@@ -3383,21 +3740,22 @@ static lao_result lao__view_reserve(lao_context *context, lao__view *view, uint3
 }
 
 /* Resolves one set's settings; sets *structural when a value that shapes the plan changed. */
-static lao_result lao__set_resolve(lao_context *context, lao__view *view, uint32_t set, const lao_settings *settings,
-                                   int *structural) {
+static lao_result lao__set_resolve(lao_context *context, lao__view *view, uint32_t set,
+                                   const lao_settings *settings, int *structural) {
     float *values = view->values + (size_t)set * context->value_count;
     uint32_t m, i, first = 0;
     char text[128];
     for (m = 0; m < context->graph.module_count; m++) {
         const lao_module *module = context->graph.modules[m];
-        uint8_t *block = view->uniforms + ((size_t)set * context->graph.module_count + m) * context->host.settings_size;
+        uint8_t *block = view->uniforms + ((size_t)set * context->graph.module_count + m) *
+                                              context->host.settings_size;
         float fresh[LAO__MOST_SETTINGS];
         int fault;
         fault = lao_settings_resolve(module, m == 0 ? settings : NULL, fresh);
         if (fault >= 0) {
             const lao_setting_row *row = &module->settings[fault];
-            snprintf(text, sizeof text, "%s = %g, must be %g to %g", row->name, (double)fresh[fault], (double)row->minimum,
-                     (double)row->maximum);
+            snprintf(text, sizeof text, "%s = %g, must be %g to %g", row->name,
+                     (double)fresh[fault], (double)row->minimum, (double)row->maximum);
             return lao__fail(context, LAO_LOG_SETTING_RANGE, text);
         }
         for (i = 0; i < module->setting_count; i++) {
@@ -3411,10 +3769,13 @@ static lao_result lao__set_resolve(lao_context *context, lao__view *view, uint32
     return LAO_OK;
 }
 
-static uint32_t lao__mix(uint32_t h, uint32_t v) { return lao_hash(h ^ (v + 0x9e3779b9u + (h << 6))); }
+static uint32_t lao__mix(uint32_t h, uint32_t v) {
+    return lao_hash(h ^ (v + 0x9e3779b9u + (h << 6)));
+}
 
 /* What besides settings shapes a plan. */
-static void lao__plan_key(const lao__view *view, const lao_frame *frame, uint32_t sets, uint32_t key[8]) {
+static void lao__plan_key(const lao__view *view, const lao_frame *frame, uint32_t sets,
+                          uint32_t key[8]) {
     uint32_t i;
     memset(key, 0, 8 * sizeof *key);
     key[0] = view->width;
@@ -3437,20 +3798,25 @@ static void lao__plan_key(const lao__view *view, const lao_frame *frame, uint32_
     }
 }
 
-static lao_result lao__imports_check(lao_context *context, const lao__view *view, const lao_frame *frame) {
+static lao_result lao__imports_check(lao_context *context, const lao__view *view,
+                                     const lao_frame *frame) {
     uint32_t i, factor = (uint32_t)view->values[LAO_SETTING_ID_supersampling];
-    if (frame->target.present && (frame->target.width != view->width || frame->target.height != view->height)) {
+    if (frame->target.present &&
+        (frame->target.width != view->width || frame->target.height != view->height)) {
         return lao__fail(context, LAO_LOG_TARGET, "lao_frame.target");
     }
     for (i = 0; i < frame->import_count; i++) {
         const lao_import *import = &frame->imports[i];
-        uint32_t image = import->image ? lao__image_find(&context->graph, import->image) : LAO_NO_INDEX;
+        uint32_t image =
+            import->image ? lao__image_find(&context->graph, import->image) : LAO_NO_INDEX;
         uint32_t scale;
-        if (image == LAO_NO_INDEX || !import->source.present || strcmp(import->image, "target") == 0) {
+        if (image == LAO_NO_INDEX || !import->source.present ||
+            strcmp(import->image, "target") == 0) {
             return lao__fail(context, LAO_LOG_IMPORT, import->image ? import->image : "(no name)");
         }
         scale = context->graph.images[image]->size == LAO_SIZE_FULL ? factor : 1;
-        if (import->source.width != view->width * scale || import->source.height != view->height * scale) {
+        if (import->source.width != view->width * scale ||
+            import->source.height != view->height * scale) {
             return lao__fail(context, LAO_LOG_IMPORT, import->image);
         }
     }
@@ -3466,7 +3832,8 @@ static const char *lao__missing_image(const lao_graph *graph, const lao_plan *pl
             const lao_plan_instance *instance = &plan->instances[step->reads[i]];
             const lao_image_row *row = graph->images[instance->image];
             int previous = (row->flags & LAO_IMAGE_HISTORY) && instance->phase == 1;
-            if (instance->import == LAO_NO_INDEX && !previous && !lao__is_written(plan, step->reads[i], s)) {
+            if (instance->import == LAO_NO_INDEX && !previous &&
+                !lao__is_written(plan, step->reads[i], s)) {
                 return row->name;
             }
         }
@@ -3490,14 +3857,16 @@ static lao_result lao__plan_check(lao_context *context, const lao_plan *plan) {
         if (n > context->caps.max_texture_units) {
             return lao__fail(context, LAO_LOG_UNITS, step->row->name);
         }
-        if (step->width > context->caps.max_image_size || step->height > context->caps.max_image_size) {
+        if (step->width > context->caps.max_image_size ||
+            step->height > context->caps.max_image_size) {
             return lao__fail(context, LAO_LOG_VIEW_SIZE, step->row->name);
         }
     }
     return LAO_OK;
 }
 
-static lao_result lao__view_plan(lao_context *context, lao__view *view, const lao_frame *frame, uint32_t sets) {
+static lao_result lao__view_plan(lao_context *context, lao__view *view, const lao_frame *frame,
+                                 uint32_t sets) {
     lao_plan_desc desc;
     lao_result result;
     memset(&desc, 0, sizeof desc);
@@ -3519,14 +3888,16 @@ static lao_result lao__view_plan(lao_context *context, lao__view *view, const la
     }
     result = lao__plan_check(context, &view->plan);
     if (result == LAO_OK) {
-        result = context->backend.view_prepare(context->self, view->backend_view, &view->plan, context->shaders);
+        result = context->backend.view_prepare(context->self, view->backend_view, &view->plan,
+                                               context->shaders);
     }
     view->prepared = result == LAO_OK;
     return result;
 }
 
 /* Centre and radius of everything that is drawn (METHODS 1.3). */
-static void lao__scene_sphere(lao_context *context, const lao_frame *frame, float least, double sphere[4]) {
+static void lao__scene_sphere(lao_context *context, const lao_frame *frame, float least,
+                              double sphere[4]) {
     double lo[3] = {0, 0, 0}, hi[3] = {0, 0, 0}, squared = 0;
     uint32_t s, k;
     int any = 0;
@@ -3555,7 +3926,9 @@ static void lao__scene_sphere(lao_context *context, const lao_frame *frame, floa
     sphere[3] = sphere[3] < 0.5 * least ? 0.5 * least : sphere[3];
 }
 
-static lao_v4 lao__column(const float *m) { return lao_v4_make(m[0], m[1], m[2], m[3]); }
+static lao_v4 lao__column(const float *m) {
+    return lao_v4_make(m[0], m[1], m[2], m[3]);
+}
 
 static lao_m4 lao__matrix(const float m[16]) {
     lao_m4 r;
@@ -3566,8 +3939,9 @@ static lao_m4 lao__matrix(const float m[16]) {
     return r;
 }
 
-static void lao__frame_uniforms_fill(const lao__view *view, const lao_frame *frame, const lao_camera *camera,
-                                     const double sphere[4], lao_frame_uniforms *u) {
+static void lao__frame_uniforms_fill(const lao__view *view, const lao_frame *frame,
+                                     const lao_camera *camera, const double sphere[4],
+                                     lao_frame_uniforms *u) {
     const float *p = camera->projection, *v = camera->view;
     double factor = view->values[LAO_SETTING_ID_supersampling];
     double w = view->width * factor, h = view->height * factor;
@@ -3585,32 +3959,37 @@ static void lao__frame_uniforms_fill(const lao__view *view, const lao_frame *fra
     u->ray.z = (float)((-1 + (orthographic ? -p[12] : p[8])) / p[0]);
     u->ray.w = (float)((-1 + (orthographic ? -p[13] : p[9])) / p[5]);
     u->viewport = lao_v4_make((float)w, (float)h, (float)(1 / w), (float)(1 / h));
-    u->depth = lao_v4_make((float)(zc - sphere[3]), (float)(1 / range), (float)range, orthographic ? 1.0f : 0.0f);
+    u->depth = lao_v4_make((float)(zc - sphere[3]), (float)(1 / range), (float)range,
+                           orthographic ? 1.0f : 0.0f);
     u->scale = lao_v4_make((float)(0.5 * w * p[0]), (float)(0.5 * h * p[5]),
                            camera->flags & LAO_CAMERA_REVERSE_DEPTH ? 1.0f : 0.0f, frame->time);
     u->unproject = lao_v4_make(p[14], -p[15], p[10], -p[11]);
     for (i = 0; i < 3; i++) {
-        (&u->background.x)[i] = lao_clamp01(frame->background[i]) * lao_clamp01(frame->background[3]);
+        (&u->background.x)[i] =
+            lao_clamp01(frame->background[i]) * lao_clamp01(frame->background[3]);
     }
     u->background.w = lao_clamp01(frame->background[3]);
     u->target = lao_v4_make((float)frame->target.width, (float)frame->target.height,
                             frame->target.flags & LAO_HOST_TOP_DOWN ? 1.0f : 0.0f,
                             frame->target.flags & LAO_HOST_ENCODE_SRGB ? 1.0f : 0.0f);
     for (i = 0; i < frame->import_count; i++) {
-        depth = strcmp(frame->imports[i].image, "host_depth") == 0 ? &frame->imports[i].source : depth;
+        depth =
+            strcmp(frame->imports[i].image, "host_depth") == 0 ? &frame->imports[i].source : depth;
     }
     if (depth) {
         u->host_depth = lao_v4_make((float)depth->width, (float)depth->height,
                                     depth->flags & LAO_HOST_TOP_DOWN ? 1.0f : 0.0f, 0.0f);
     }
-    u->host_depth.w = mm ? (float)range : 1.0f; /* depth differences times this are what the thresholds mean */
+    u->host_depth.w =
+        mm ? (float)range : 1.0f; /* depth differences times this are what the thresholds mean */
 }
 
-static lao_result lao__frame_sets(lao_context *context, lao__view *view, const lao_frame *frame, uint32_t sets,
-                                  int *structural) {
+static lao_result lao__frame_sets(lao_context *context, lao__view *view, const lao_frame *frame,
+                                  uint32_t sets, int *structural) {
     uint32_t s;
     for (s = 0; s < sets; s++) {
-        const lao__lines *lines = s < frame->set_count ? lao__lines_get(context, frame->sets[s].lines) : NULL;
+        const lao__lines *lines =
+            s < frame->set_count ? lao__lines_get(context, frame->sets[s].lines) : NULL;
         const lao_settings *settings = s < frame->set_count ? frame->sets[s].settings : NULL;
         lao_result result;
         if (s < frame->set_count && frame->sets[s].lines.id != 0 && !lines) {
@@ -3667,8 +4046,10 @@ lao_result lao_render(lao_context *context, const lao_frame *frame) {
     lao_result result;
     uint32_t sets, key[8];
     int structural = 0;
-    if (!context || !frame || (frame->set_count > 0 && !frame->sets) || (frame->import_count > 0 && !frame->imports)) {
-        return context ? lao__fail(context, LAO_LOG_NULL_ARGUMENT, "lao_render") : LAO_ERROR_INVALID_ARGUMENT;
+    if (!context || !frame || (frame->set_count > 0 && !frame->sets) ||
+        (frame->import_count > 0 && !frame->imports)) {
+        return context ? lao__fail(context, LAO_LOG_NULL_ARGUMENT, "lao_render")
+                       : LAO_ERROR_INVALID_ARGUMENT;
     }
     view = lao__view_get(context, frame->view);
     if (!view) {
@@ -3706,7 +4087,8 @@ lao_result lao_occlude(lao_context *context, const lao_frame *frame, const lao_s
     lao_frame own;
     uint32_t i, k, found = 0;
     if (!context || !frame || (frame->import_count > 0 && !frame->imports)) {
-        return context ? lao__fail(context, LAO_LOG_NULL_ARGUMENT, "lao_occlude") : LAO_ERROR_INVALID_ARGUMENT;
+        return context ? lao__fail(context, LAO_LOG_NULL_ARGUMENT, "lao_occlude")
+                       : LAO_ERROR_INVALID_ARGUMENT;
     }
     for (k = 0; k < 3; k++) {
         for (i = 0; i < frame->import_count; i++) {
@@ -3714,7 +4096,8 @@ lao_result lao_occlude(lao_context *context, const lao_frame *frame, const lao_s
         }
     }
     if (found != 3 || !(frame->sphere[3] > 0)) {
-        return lao__fail(context, LAO_LOG_IMPORT, "lao_occlude needs color, tangent, depth and a sphere");
+        return lao__fail(context, LAO_LOG_IMPORT,
+                         "lao_occlude needs color, tangent, depth and a sphere");
     }
     set.lines.id = 0;
     set.settings = settings;
@@ -3724,15 +4107,18 @@ lao_result lao_occlude(lao_context *context, const lao_frame *frame, const lao_s
     return lao_render(context, &own);
 }
 
-/* ============================================================================================================= reading */
+/* =============================================================================================================
+ * reading */
 
-static lao_result lao__read_instance(lao_context *context, lao_view handle, const char *image, uint32_t level,
-                                     lao__view **view, const lao_plan_instance **found) {
+static lao_result lao__read_instance(lao_context *context, lao_view handle, const char *image,
+                                     uint32_t level, lao__view **view,
+                                     const lao_plan_instance **found) {
     uint32_t i, k, row;
     const lao_plan *plan;
     *found = NULL;
     if (!context || !image) {
-        return context ? lao__fail(context, LAO_LOG_NULL_ARGUMENT, "lao_read") : LAO_ERROR_INVALID_ARGUMENT;
+        return context ? lao__fail(context, LAO_LOG_NULL_ARGUMENT, "lao_read")
+                       : LAO_ERROR_INVALID_ARGUMENT;
     }
     *view = lao__view_get(context, handle);
     if (!*view) {
@@ -3746,23 +4132,27 @@ static lao_result lao__read_instance(lao_context *context, lao_view handle, cons
     /* of ping-pong partners the one that was written last */
     for (i = 0; i < plan->instance_count; i++) {
         const lao_plan_instance *instance = &plan->instances[i];
-        if (instance->image == row && instance->level == level && instance->import == LAO_NO_INDEX &&
+        if (instance->image == row && instance->level == level &&
+            instance->import == LAO_NO_INDEX &&
             (!*found || instance->last_step > (*found)->last_step)) {
             *found = instance;
         }
     }
     for (i = 0; *found && i < plan->instance_count; i++) {
         for (k = 0; k < 2; k++) {
-            if (plan->instances[i].slot[k] == (*found)->slot[0] && plan->instances[i].first_step > (*found)->last_step) {
-                return lao__fail(context, LAO_LOG_IMAGE_UNKNOWN, "its memory was used again; create the view with LAO_VIEW_KEEP_IMAGES");
+            if (plan->instances[i].slot[k] == (*found)->slot[0] &&
+                plan->instances[i].first_step > (*found)->last_step) {
+                return lao__fail(
+                    context, LAO_LOG_IMAGE_UNKNOWN,
+                    "its memory was used again; create the view with LAO_VIEW_KEEP_IMAGES");
             }
         }
     }
     return *found ? LAO_OK : lao__fail(context, LAO_LOG_IMAGE_UNKNOWN, image);
 }
 
-lao_result lao_read_raw(lao_context *context, lao_view view, const char *image, uint32_t level, void *data, size_t capacity,
-                        lao_read_info *info) {
+lao_result lao_read_raw(lao_context *context, lao_view view, const char *image, uint32_t level,
+                        void *data, size_t capacity, lao_read_info *info) {
     lao__view *object = NULL;
     const lao_plan_instance *instance;
     lao_result result = lao__read_instance(context, view, image, level, &object, &instance);
@@ -3776,7 +4166,8 @@ lao_result lao_read_raw(lao_context *context, lao_view view, const char *image, 
     }
     if (data) {
         uint32_t parity = (object->frame - 1) & 1;
-        result = context->backend.read(context->self, object->backend_view, &object->plan, instance->slot[parity], data, size);
+        result = context->backend.read(context->self, object->backend_view, &object->plan,
+                                       instance->slot[parity], data, size);
     }
     if (result == LAO_OK && info) {
         info->width = instance->width;
@@ -3832,8 +4223,8 @@ static void lao__decode(const lao_image_row *row, const uint8_t *texel, float *o
     memcpy(out, &v, lao__channel_count(row) * sizeof *out);
 }
 
-lao_result lao_read(lao_context *context, lao_view view, const char *image, uint32_t level, float *data, size_t capacity,
-                    lao_read_info *info) {
+lao_result lao_read(lao_context *context, lao_view view, const char *image, uint32_t level,
+                    float *data, size_t capacity, lao_read_info *info) {
     lao__view *object = NULL;
     const lao_plan_instance *instance;
     const lao_image_row *row;
@@ -3876,7 +4267,8 @@ lao_result lao_timings(lao_context *context, lao_view view, lao_timing *timings,
     double *milliseconds;
     uint32_t i, n;
     if (!context || !count) {
-        return context ? lao__fail(context, LAO_LOG_NULL_ARGUMENT, "lao_timings") : LAO_ERROR_INVALID_ARGUMENT;
+        return context ? lao__fail(context, LAO_LOG_NULL_ARGUMENT, "lao_timings")
+                       : LAO_ERROR_INVALID_ARGUMENT;
     }
     object = lao__view_get(context, view);
     if (!object) {
@@ -3904,7 +4296,8 @@ lao_result lao_timings(lao_context *context, lao_view view, lao_timing *timings,
     return result;
 }
 
-/* ======================================================================================================== null backend */
+/* ========================================================================================================
+ * null backend */
 
 typedef struct lao__null {
     lao_null_desc desc;
@@ -3921,7 +4314,8 @@ static lao_result lao__null_call(lao__null *null, const char *name) {
     return LAO_OK;
 }
 
-static lao_result lao__null_attach(const lao_backend *backend, const lao_host *host, void **self, lao_backend_caps *caps) {
+static lao_result lao__null_attach(const lao_backend *backend, const lao_host *host, void **self,
+                                   lao_backend_caps *caps) {
     lao__null *null = (lao__null *)lao__new(&host->allocator, 1, sizeof *null);
     lao_result result;
     if (!null) {
@@ -3978,7 +4372,8 @@ static void lao__null_object_destroy(void *self, void *object) {
     lao__delete(&((lao__null *)self)->host->allocator, object, 1, 1);
 }
 
-static lao_result lao__null_view_prepare(void *self, void *view, const lao_plan *plan, const lao_shader *const *shaders) {
+static lao_result lao__null_view_prepare(void *self, void *view, const lao_plan *plan,
+                                         const lao_shader *const *shaders) {
     (void)view;
     (void)plan;
     (void)shaders;
@@ -3995,7 +4390,8 @@ static lao_result lao__null_execute(void *self, void *view, const lao_execution 
     return result;
 }
 
-static lao_result lao__null_read(void *self, void *view, const lao_plan *plan, uint32_t slot, void *data, size_t size) {
+static lao_result lao__null_read(void *self, void *view, const lao_plan *plan, uint32_t slot,
+                                 void *data, size_t size) {
     (void)view;
     (void)plan;
     (void)slot;
@@ -4008,7 +4404,8 @@ static lao_result lao__null_read(void *self, void *view, const lao_plan *plan, u
     }
 }
 
-static lao_result lao__null_timings(void *self, void *view, double *milliseconds, uint32_t step_count) {
+static lao_result lao__null_timings(void *self, void *view, double *milliseconds,
+                                    uint32_t step_count) {
     (void)view;
     (void)milliseconds;
     (void)step_count;

@@ -26,7 +26,8 @@
 #include <string.h>
 
 /* ------------------------------------------------------------------------------------ functions */
-/* X(name, source). CORE13 names fall back to their KHR alias; OPTIONAL ones belong to VK_EXT_debug_utils. */
+/* X(name, source). CORE13 names fall back to their KHR alias; OPTIONAL ones belong to
+ * VK_EXT_debug_utils. */
 
 /* clang-format off */
 #define LAO__VK_FUNCTIONS(X)                                                                       \

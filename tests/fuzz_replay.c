@@ -1,4 +1,5 @@
-/* Runs a fuzz target once on every file named, or in the folders named, so that a found input stays found with any compiler. */
+/* Runs a fuzz target once on every file named, or in the folders named, so that a found input stays
+ * found with any compiler. */
 #define _POSIX_C_SOURCE 200809L
 #include <dirent.h>
 #include <stdint.h>

@@ -1,4 +1,5 @@
-/* Keeps drivers loaded in sanitizer builds, so that the leak checker can name their frames instead of "<unknown module>". */
+/* Keeps drivers loaded in sanitizer builds, so that the leak checker can name their frames instead
+ * of "<unknown module>". */
 #include <dlfcn.h>
 
 int dlclose(void *handle) {

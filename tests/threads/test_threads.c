@@ -1,4 +1,5 @@
-/* Proves that contexts share nothing: two threads, each with its own context, get what one thread alone gets. */
+/* Proves that contexts share nothing: two threads, each with its own context, get what one thread
+ * alone gets. */
 #include "lineao.h"
 
 #include <pthread.h>
