@@ -1391,15 +1391,6 @@ LAO_FN float lao_view_depth(lao_v4 depth, float scene_depth) {
     LAO_EXACT float z = depth.x + scene_depth * depth.z;
     return z;
 }
-/* View depth of a fragment: clip w is it in perspective, where window depth has lost its precision;
-   else from window depth, which is then linear. */
-LAO_FN float lao_fragment_depth(lao_v4 unproject, lao_v4 depth, float window_depth,
-                                float inverse_w) {
-    LAO_EXACT float perspective = 1.0f / inverse_w;
-    LAO_EXACT float orthographic =
-        (unproject.x + unproject.y * window_depth) / (unproject.z + unproject.w * window_depth);
-    return depth.w > 0.5f ? orthographic : perspective;
-}
 /* Slope (perspective) or position (orthographic) of the view ray through a pixel centre; px = ix +
  * 0.5. */
 LAO_FN lao_v2 lao_pixel_slope(lao_v4 ray, float px, float py) {

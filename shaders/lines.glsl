@@ -3,7 +3,7 @@ LAO_TEX(0, samplerBuffer, points)
 LAO_TEX(1, samplerBuffer, colors)
 
 LAO_VARYING(0, vec4, tangent_zoom)
-LAO_VARYING(1, vec4, line_color) /* red, green, blue; -1 .. 1 across the line */
+LAO_VARYING(1, vec4, color_depth) /* red, green, blue; view depth (mm) */
 
 #ifdef LAO_VERTEX
 lao_v3 view_direction(lao_v3 p) { return lao_frame.depth.w > 0.5 ? lao_v3_make(0.0, 0.0, -1.0) : p; }
@@ -15,7 +15,7 @@ void main() {
     vec4 start = texelFetch(points, segment + 1);
     vec4 end = texelFetch(points, segment + 2);
     tangent_zoom = vec4(0.0);
-    line_color = vec4(0.0);
+    color_depth = vec4(0.0);
     if (start.w >= LAO_GHOST_TIME || end.w >= LAO_GHOST_TIME) {
         gl_Position = vec4(2.0, 2.0, 2.0, 1.0); /* between two lines: outside, so that the quad is culled here */
         return;
@@ -30,7 +30,7 @@ void main() {
         lao_line_join(view_direction(p), lao_v3_sub(p2, p1), other, half_width, at_end ? 1.0 : -1.0);
     lao_v3 corner = lao_v3_add(lao_v3_along(p, join.across, side), join.along);
     tangent_zoom = vec4(join.tangent, lao_zoom(lao_frame.projection, lao_frame.viewport, p, join.normal));
-    line_color = vec4(texelFetch(colors, at_end ? segment + 2 : segment + 1).xyz, side);
+    color_depth = vec4(texelFetch(colors, at_end ? segment + 2 : segment + 1).xyz, -corner.z);
     lao_emit(lao_project(lao_frame.projection, corner));
 }
 #endif
@@ -41,9 +41,8 @@ LAO_OUT(2, vec4, out_depth)
 
 #ifdef LAO_FRAGMENT
 void main() {
-    out_color = vec4(line_color.xyz, 1.0);
+    out_color = vec4(color_depth.xyz, 1.0);
     out_tangent = vec4(lao_v3_unit(tangent_zoom.xyz, lao_v3_make(1.0, 0.0, 0.0)), tangent_zoom.w);
-    float z = lao_fragment_depth(lao_frame.unproject, lao_frame.depth, gl_FragCoord.z, gl_FragCoord.w);
-    out_depth = vec4(lao_scene_depth(lao_frame.depth, z));
+    out_depth = vec4(lao_scene_depth(lao_frame.depth, color_depth.w));
 }
 #endif
