@@ -72,7 +72,7 @@ extern "C" {
 typedef enum lao_result {
     LAO_OK = 0,
     LAO_ERROR_INVALID_ARGUMENT, /* the host passed something that cannot be; the log says what */
-    LAO_ERROR_STALE_HANDLE,     /* the handle was destroyed, or belongs to another context */
+    LAO_ERROR_STALE_HANDLE,     /* the handle was destroyed or never made */
     LAO_ERROR_OUT_OF_MEMORY,    /* the allocator returned NULL */
     LAO_ERROR_OUT_OF_DEVICE_MEMORY,
     LAO_ERROR_UNSUPPORTED, /* the device or its driver lacks something; the log names it */
@@ -3955,11 +3955,12 @@ static void lao__frame_uniforms_fill(const lao__view *view, const lao_frame *fra
     u->scale = lao_v4_make((float)(0.5 * w * p[0]), (float)(0.5 * h * p[5]),
                            camera->flags & LAO_CAMERA_REVERSE_DEPTH ? 1.0f : 0.0f, frame->time);
     u->unproject = lao_v4_make(p[14], -p[15], p[10], -p[11]);
-    for (i = 0; i < 3; i++) {
-        (&u->background.x)[i] =
-            lao_clamp01(frame->background[i]) * lao_clamp01(frame->background[3]);
+    {
+        const float *b = frame->background;
+        float alpha = lao_clamp01(b[3]);
+        u->background = lao_v4_make(lao_clamp01(b[0]) * alpha, lao_clamp01(b[1]) * alpha,
+                                    lao_clamp01(b[2]) * alpha, alpha);
     }
-    u->background.w = lao_clamp01(frame->background[3]);
     u->target = lao_v4_make((float)frame->target.width, (float)frame->target.height,
                             frame->target.flags & LAO_HOST_TOP_DOWN ? 1.0f : 0.0f,
                             frame->target.flags & LAO_HOST_ENCODE_SRGB ? 1.0f : 0.0f);
@@ -4188,21 +4189,23 @@ static uint32_t lao__channel_count(const lao_image_row *row) {
 
 /* One raw texel to the numbers it stands for. */
 static void lao__decode(const lao_image_row *row, const uint8_t *texel, float *out) {
-    lao_v4 v = lao_v4_make(0, 0, 0, 0);
+    float f[4] = {0, 0, 0, 0};
+    lao_v4 v;
     uint16_t half[4];
     int i;
     if (row->format == LAO_FORMAT_RGBA8) {
         for (i = 0; i < 4; i++) {
-            (&v.x)[i] = (float)texel[i] / 255.0f;
+            f[i] = (float)texel[i] * (1.0f / 255.0f); /* as devices do */
         }
     } else if (row->format == LAO_FORMAT_RGBA16F) {
         memcpy(half, texel, sizeof half);
         for (i = 0; i < 4; i++) {
-            (&v.x)[i] = lao__half(half[i]);
+            f[i] = lao__half(half[i]);
         }
     } else {
-        memcpy(&v, texel, lao_format_bytes(row->format));
+        memcpy(f, texel, lao_format_bytes(row->format));
     }
+    v = lao_v4_make(f[0], f[1], f[2], f[3]);
     if (row->encoding == LAO_ENCODING_DEPTH24) {
         v = lao_v4_make(lao_depth_unpack(v), v.w, 0, 0);
     } else if (row->encoding == LAO_ENCODING_AXIAL16) {

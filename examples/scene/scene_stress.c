@@ -121,9 +121,8 @@ static void add_case(scene_builder *builder, uint32_t which, vec3 o) {
 void scene_build_stress(scene_builder *builder, uint32_t count) {
     enum { CASES = 24, COLUMNS = 6 };
     for (uint32_t i = 0; i < count && !builder->failed; i++) {
-        uint32_t which = i % CASES, layer = i / CASES;
-        add_case(builder, which,
-                 vec3_make(20.0 * (which % COLUMNS), -20.0 * (which / COLUMNS), -60.0 * layer));
+        uint32_t which = i % CASES, layer = i / CASES, row = which / COLUMNS;
+        add_case(builder, which, vec3_make(20.0 * (which % COLUMNS), -20.0 * row, -60.0 * layer));
         scene_end_line(builder);
     }
 }
