@@ -127,7 +127,7 @@ void camera_fit_end(const camera_fit *fit, camera_pose *out) {
     double height = fmax(high[1] - low[1], (high[0] - low[0]) / fit->aspect) / fit->slope[1];
     if (fit->fovy > 0.0) {
         eye[2] = low[2] - 0.25 * radius; /* lines seen end-on must not touch the eye */
-        for (int i = 0; i < 2; i++) {
+        for (size_t i = 0; i < 2; i++) {
             eye[i] = 0.5 * (reach[2 * i] - reach[2 * i + 1]);
             eye[2] = fmin(eye[2], -0.5 * (reach[2 * i] + reach[2 * i + 1]) / fit->slope[i]);
         }

@@ -6,6 +6,7 @@
  * evenly stay even, and that vanish or run along the wall, so that they never leave the vessel. */
 #include "scene_build.h"
 
+#include <stddef.h>
 #include <math.h>
 #include <stdlib.h>
 
@@ -289,7 +290,8 @@ static vec3 velocity(const lumen *tube, const pulse *now, vec3 q) {
 static vec3 rk4_step(const lumen *tube, const pulse pulses[2 * BEAT_STEPS + 1], int k, int way,
                      vec3 q) {
     double h = way * beat / BEAT_STEPS;
-    const pulse *from = &pulses[2 * k], *middle = from + way, *to = from + 2 * way;
+    const pulse *from = pulses + 2 * (ptrdiff_t)k, *middle = from + way;
+    const pulse *to = from + 2 * (ptrdiff_t)way;
     vec3 k1 = velocity(tube, from, q), k2 = velocity(tube, middle, vec3_mad(q, k1, 0.5 * h));
     vec3 k3 = velocity(tube, middle, vec3_mad(q, k2, 0.5 * h));
     vec3 k4 = velocity(tube, to, vec3_mad(q, k3, h));

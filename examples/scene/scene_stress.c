@@ -9,7 +9,7 @@ static void add(scene_builder *builder, vec3 origin, double x, double y, double 
 
 /* A line through the given x, y pairs; a pair given twice is a repeated point. */
 static void path(scene_builder *builder, vec3 origin, const double *pairs, int count) {
-    for (int i = 0; i < count; i++)
+    for (size_t i = 0; i < (size_t)count; i++)
         add(builder, origin, pairs[2 * i], pairs[2 * i + 1], 0.0);
 }
 
