@@ -1,6 +1,8 @@
 /* Lines that break renderers, on a 6 x 4 board of 20 mm cells, seen along -z. */
 #include "scene_build.h"
 
+#include <stddef.h>
+
 #include <math.h>
 
 static void add(scene_builder *builder, vec3 origin, double x, double y, double z) {
