@@ -137,7 +137,7 @@ int main(int count, char **arguments) {
     lao_destroy(context); /* with its lines and views, when the device is done with them */
     FILE *file = fopen(count > 1 ? arguments[1] : "hello_vk.ppm", "wb");
     TRY(!file || fprintf(file, "P6 %d %d 255\n", WIDTH, HEIGHT) < 0);
-    for (size_t i = 0; i < WIDTH * HEIGHT; i++)
+    for (size_t i = 0; i < (size_t)WIDTH * HEIGHT; i++)
         TRY(!fwrite((uint8_t *)pixels + i / WIDTH * rows.rowPitch + i % WIDTH * 4, 3, 1, file));
     vkDestroyCommandPool(device, pool, NULL);
     vkDestroyImageView(device, view, NULL);
