@@ -4,6 +4,7 @@
 #   ./amalgamate.sh            write both
 #   ./amalgamate.sh --check    prove that the committed lineao_shaders.h is current and that dist/ compiles
 # Needs cc, awk, glslangValidator.
+# shellcheck disable=SC2086 # lists are split into words on purpose
 set -eu
 LC_ALL=C
 export LC_ALL

@@ -220,7 +220,7 @@ static void presets_without_setting(tables *t) {
 }
 static void too_many_settings(tables *t) {
     static lao_setting_row rows[65];
-    static char names[65][8];
+    static char names[65][16];
     for (int i = 0; i < 65; i++) {
         snprintf(names[i], sizeof names[i], "s%d", i);
         rows[i] = setting_row(i == 0 ? "levels" : i == 1 ? "preset" : names[i], 0);
@@ -865,7 +865,7 @@ static void keep_clears_each_level_and_partner_once(void **state) {
 enum { RANDOM_IMAGES = 8, RANDOM_PASSES = 20 };
 
 typedef struct random_graph {
-    char names[RANDOM_IMAGES + RANDOM_PASSES][8];
+    char names[RANDOM_IMAGES + RANDOM_PASSES][16];
     lao_image_row images[RANDOM_IMAGES + 1];
     lao_pass_row passes[RANDOM_PASSES + 1];
     uint32_t image_count, pass_count;
@@ -912,7 +912,7 @@ static void random_fill(random_graph *g, uint32_t *seed) {
     memset(g, 0, sizeof *g);
     g->image_count = 3 + core_random(seed) % (RANDOM_IMAGES - 3);
     for (uint32_t i = 0; i < g->image_count; i++) {
-        snprintf(g->names[i], 8, "i%u", i);
+        snprintf(g->names[i], sizeof g->names[i], "i%u", i);
         g->images[i] =
             image_row(g->names[i], formats[core_random(seed) % 4],
                       (lao_size)(core_random(seed) % 3), levels[core_random(seed) % 5], 0);
