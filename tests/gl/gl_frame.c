@@ -82,55 +82,65 @@ static const lao_pass_row rows[GL_FRAME_STEPS] = {
     {"lines",
      LAO_PASS_DRAW_LINES,
      "t_lines",
+     LAO_STAGE_DRAW,
      LAO_SCOPE_PER_SET,
      LAO_REPEAT_NONE,
      NULL,
      LAO_BLEND_NONE,
      LAO_DEPTH_NEARER,
+     LAO_CULL_NONE,
      {{0}},
      {{0}},
      {{0}}},
     {"over",
      LAO_PASS_FULLSCREEN,
      "t_over",
+     LAO_STAGE_DRAW,
      LAO_SCOPE_FRAME,
      LAO_REPEAT_NONE,
      NULL,
      LAO_BLEND_OVER,
      LAO_DEPTH_NONE,
+     LAO_CULL_NONE,
      {{0}},
      {{0}},
      {{0}}},
     {"history",
      LAO_PASS_FULLSCREEN,
      "t_history",
+     LAO_STAGE_DRAW,
      LAO_SCOPE_FRAME,
      LAO_REPEAT_NONE,
      NULL,
      LAO_BLEND_NONE,
      LAO_DEPTH_NONE,
+     LAO_CULL_NONE,
      {{0}},
      {{0}},
      {{0}}},
     {"depth",
      LAO_PASS_FULLSCREEN,
      "t_depth",
+     LAO_STAGE_DRAW,
      LAO_SCOPE_FRAME,
      LAO_REPEAT_NONE,
      NULL,
      LAO_BLEND_NONE,
      LAO_DEPTH_ALWAYS,
+     LAO_CULL_NONE,
      {{0}},
      {{0}},
      {{0}}},
     {"present",
      LAO_PASS_FULLSCREEN,
      "t_present",
+     LAO_STAGE_DRAW,
      LAO_SCOPE_FRAME,
      LAO_REPEAT_NONE,
      NULL,
      LAO_BLEND_ADD,
      LAO_DEPTH_NONE,
+     LAO_CULL_NONE,
      {{0}},
      {{0}},
      {{0}}},
@@ -245,7 +255,7 @@ void gl_frame_init(gl_frame *frame, uint32_t size) {
     it->colors[2].instance = LINEAR_DEPTH;
     it->depth.instance = DEPTH;
     it->depth.value[0] = 1;
-    reads(it, 2, LAO_READ_POINTS, LAO_READ_COLORS, 0);
+    reads(it, 2, LAO_READ_BUFFER, LAO_READ_BUFFER + 1, 0);
     it = step(frame, 1, size, COLOR);
     it->colors[0].clear = 0;
     it->constants[0] = 3;
@@ -282,17 +292,17 @@ lao_result gl_frame_lines_create(gl_frame *frame, const lao_backend *backend, vo
     desc.format = LAO_FORMAT_RGBA32F;
     desc.texel_count = 5;
     desc.data = points;
-    frame->chunk.segment_count = 2;
-    result = backend->buffer_create(self, &desc, &frame->chunk.points);
+    frame->chunk.count = 2;
+    result = backend->buffer_create(self, &desc, &frame->chunk.buffers[0]);
     if (result)
         return result;
     desc.format = LAO_FORMAT_RGBA8;
     desc.data = colors;
-    return backend->buffer_create(self, &desc, &frame->chunk.colors);
+    return backend->buffer_create(self, &desc, &frame->chunk.buffers[1]);
 }
 
 void gl_frame_lines_destroy(gl_frame *frame, const lao_backend *backend, void *self) {
-    backend->buffer_destroy(self, frame->chunk.points);
-    backend->buffer_destroy(self, frame->chunk.colors);
-    frame->chunk.points = frame->chunk.colors = NULL;
+    backend->buffer_destroy(self, frame->chunk.buffers[0]);
+    backend->buffer_destroy(self, frame->chunk.buffers[1]);
+    frame->chunk.buffers[0] = frame->chunk.buffers[1] = NULL;
 }
