@@ -263,7 +263,9 @@ typedef enum lao_repeat {
     LAO_REPEAT_NONE,
     LAO_REPEAT_LEVELS_UP,   /* level 1 .. last of the first written image */
     LAO_REPEAT_LEVELS_DOWN, /* last - 1 .. 0 */
-    LAO_REPEAT_COUNT        /* as often as the setting `repeat_setting` says */
+    LAO_REPEAT_COUNT,       /* as often as the setting `repeat_setting` says */
+    LAO_REPEAT_WITH_LAST    /* in every turn of the row before that is not WITH_LAST itself, behind
+                               it and at its level; `repeat_setting` (optional): so often each turn */
 } lao_repeat;
 typedef enum lao_scope {
     LAO_SCOPE_FRAME,
@@ -1110,6 +1112,7 @@ typedef struct lao_m4 lao_m4;
 struct lao_frame_uniforms {
     lao_m4 view;       /* world to canonical view space */
     lao_m4 projection; /* canonical view space to clip space */
+    lao_m4 world;      /* canonical view space to world */
     lao_v4 ray; /* view slope of a pixel centre: x = ray.x * px + ray.z, y = ray.y * py + ray.w */
     lao_v4 viewport; /* supersampled width, height, 1 / width, 1 / height */
     lao_v4 depth; /* z0, 1 / (z1 - z0) of the scene sphere; z1 - z0; 1 for an orthographic camera */
@@ -2559,10 +2562,15 @@ int lao_graph_check(const lao_graph *graph, const lao_shader *shaders, uint32_t 
                 return -1;
             }
         }
-        if (row->repeat == LAO_REPEAT_COUNT &&
-            (!row->repeat_setting ||
+        if ((row->repeat == LAO_REPEAT_COUNT && !row->repeat_setting) ||
+            (row->repeat_setting &&
              lao__value_find(graph, m, row->repeat_setting) == LAO_NO_INDEX)) {
             return lao__fault(text, text_size, "pass '%s' repeats by an unknown setting%s",
+                              row->name, "");
+        }
+        if (row->repeat == LAO_REPEAT_WITH_LAST && (i == 0 || graph->pass_modules[i - 1] != m ||
+                                                    graph->passes[i - 1]->scope != row->scope)) {
+            return lao__fault(text, text_size, "pass '%s' has no row before it to repeat with%s",
                               row->name, "");
         }
         if (lao__check_row(graph, i, row, text, text_size) != 0) {
@@ -2946,40 +2954,64 @@ static void lao__step_add(lao__planner *p, uint32_t pass, uint32_t set, uint32_t
     plan->step_count++;
 }
 
+static int lao__row_runs(const lao__planner *p, uint32_t pass, uint32_t set) {
+    const lao_pass_row *row = p->graph->passes[pass];
+    uint32_t i;
+    for (i = 0; i < LAO_MAX_CONDITIONS; i++) {
+        if (!lao__holds(p, p->graph->pass_modules[pass], set, &row->when[i])) {
+            return 0;
+        }
+    }
+    return !lao__imported_away(p, row);
+}
+
+/* One turn of a row, with the rows that repeat with it. */
+static void lao__plan_turn(lao__planner *p, uint32_t pass, uint32_t set, uint32_t level,
+                           uint32_t iteration) {
+    const lao_graph *graph = p->graph;
+    uint32_t i, k, n;
+    lao__step_add(p, pass, set, level, iteration);
+    for (i = pass + 1; i < graph->pass_count && graph->passes[i]->repeat == LAO_REPEAT_WITH_LAST;
+         i++) {
+        const char *setting = graph->passes[i]->repeat_setting;
+        n = setting ? (uint32_t)lao__value(p, graph->pass_modules[i], set, setting) : 1;
+        for (k = 0; k < n && lao__row_runs(p, i, set); k++) {
+            lao__step_add(p, i, set, level, k);
+        }
+    }
+}
+
 static void lao__plan_pass(lao__planner *p, uint32_t pass, uint32_t set) {
     const lao_pass_row *row = p->graph->passes[pass];
     uint32_t module = p->graph->pass_modules[pass], i, n;
     const lao_image_row *first = p->graph->images[lao__image_find(p->graph, row->writes[0].image)];
-    for (i = 0; i < LAO_MAX_CONDITIONS; i++) {
-        if (!lao__holds(p, module, set, &row->when[i])) {
-            return;
-        }
-    }
-    if (lao__imported_away(p, row)) {
+    if (!lao__row_runs(p, pass, set)) {
         return;
     }
     switch (row->repeat) {
     case LAO_REPEAT_NONE:
-        lao__step_add(p, pass, set, 0, 0);
+        lao__plan_turn(p, pass, set, 0, 0);
         break;
     case LAO_REPEAT_LEVELS_UP:
         n = lao__level_count(p, module, set, first);
         for (i = 1; i < n; i++) {
-            lao__step_add(p, pass, set, i, i - 1);
+            lao__plan_turn(p, pass, set, i, i - 1);
         }
         break;
     case LAO_REPEAT_LEVELS_DOWN:
         n = lao__level_count(p, module, set, first);
         for (i = n - 1; i > 0; i--) {
-            lao__step_add(p, pass, set, i - 1, n - 1 - i);
+            lao__plan_turn(p, pass, set, i - 1, n - 1 - i);
         }
         break;
     case LAO_REPEAT_COUNT:
         n = (uint32_t)lao__value(p, module, set, row->repeat_setting);
         for (i = 0; i < n; i++) {
-            lao__step_add(p, pass, set, 0, i);
+            lao__plan_turn(p, pass, set, 0, i);
         }
         break;
+    case LAO_REPEAT_WITH_LAST:
+        break; /* in the turns of the row before */
     }
 }
 
@@ -4274,6 +4306,33 @@ static lao_m4 lao__matrix(const float m[16]) {
     return r;
 }
 
+/* The inverse of an affine matrix; lao_camera_canonical has refused singular ones. */
+static lao_m4 lao__affine_inverse(const float m[16]) {
+    double a[3][3], inverse[3][3], d;
+    float out[16];
+    int r, c;
+    for (r = 0; r < 3; r++) {
+        for (c = 0; c < 3; c++) {
+            a[r][c] = m[c * 4 + r];
+        }
+    }
+    d = lao__determinant3((const double(*)[3])a);
+    memset(out, 0, sizeof out);
+    for (r = 0; r < 3; r++) {
+        for (c = 0; c < 3; c++) { /* cofactors, transposed */
+            int i = (c + 1) % 3, k = (c + 2) % 3, j = (r + 1) % 3, l = (r + 2) % 3;
+            inverse[r][c] = (a[i][j] * a[k][l] - a[i][l] * a[k][j]) / d;
+            out[c * 4 + r] = (float)inverse[r][c];
+        }
+    }
+    for (r = 0; r < 3; r++) {
+        out[12 + r] =
+            (float)-(inverse[r][0] * m[12] + inverse[r][1] * m[13] + inverse[r][2] * m[14]);
+    }
+    out[15] = 1;
+    return lao__matrix(out);
+}
+
 static void lao__frame_uniforms_fill(const lao__view *view, const lao_frame *frame,
                                      const lao_camera *camera, const double sphere[4],
                                      lao_frame_uniforms *u) {
@@ -4288,6 +4347,7 @@ static void lao__frame_uniforms_fill(const lao__view *view, const lao_frame *fra
     memset(u, 0, sizeof *u);
     u->view = lao__matrix(v);
     u->projection = lao__matrix(p);
+    u->world = lao__affine_inverse(v);
     /* ndc = P00 slope - P02 (perspective), P00 x + P03 (orthographic) */
     u->ray.x = (float)(2 / (w * p[0]));
     u->ray.y = (float)(2 / (h * p[5]));
