@@ -367,6 +367,9 @@ typedef struct lao_shader {
     uint32_t output_count;
     lao_shader_stage vertex; /* empty: the shared full-screen triangle */
     lao_shader_stage fragment;
+    const char *const
+        *prologue; /* lines between the common prologue and the stage's: the module's */
+    uint32_t prologue_count;
 } lao_shader;
 
 /* Everything that a group of effects adds to the graph. A settings struct is `uint64_t set; float

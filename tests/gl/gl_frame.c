@@ -28,6 +28,7 @@ static const char *const lines_fragment[] = {"flat in vec4 t_color;\n",
                                              "    t_depth = vec4(gl_FragCoord.z);\n",
                                              "}\n"};
 static const char *const over_fragment[] = {
+    "LAO_SETTINGS_BLOCK(2)\n",
     "uniform sampler2D t_depth;\n",
     "uniform sampler2D t_nothing;\n",
     "layout(location = 0) out vec4 t_out;\n",
@@ -69,11 +70,13 @@ static const lao_texture_type images[] = {LAO_TEXTURE_2D, LAO_TEXTURE_2D, LAO_TE
 #define NO_STAGE                                                                                   \
     { NULL, 0, NULL, 0 }
 static const lao_shader shaders[GL_FRAME_STEPS] = {
-    {"t_lines", NULL, 0, line_names, buffers, 2, 3, STAGE(lines_vertex), STAGE(lines_fragment)},
-    {"t_over", over_constants, 1, over_names, images, 2, 1, NO_STAGE, STAGE(over_fragment)},
-    {"t_history", NULL, 0, history_names, images, 3, 1, NO_STAGE, STAGE(history_fragment)},
-    {"t_depth", NULL, 0, depth_names, images, 1, 0, NO_STAGE, STAGE(depth_fragment)},
-    {"t_present", NULL, 0, present_names, images, 1, 1, NO_STAGE, STAGE(present_fragment)},
+    {"t_lines", NULL, 0, line_names, buffers, 2, 3, STAGE(lines_vertex), STAGE(lines_fragment),
+     NULL, 0},
+    {"t_over", over_constants, 1, over_names, images, 2, 1, NO_STAGE, STAGE(over_fragment), NULL,
+     0},
+    {"t_history", NULL, 0, history_names, images, 3, 1, NO_STAGE, STAGE(history_fragment), NULL, 0},
+    {"t_depth", NULL, 0, depth_names, images, 1, 0, NO_STAGE, STAGE(depth_fragment), NULL, 0},
+    {"t_present", NULL, 0, present_names, images, 1, 1, NO_STAGE, STAGE(present_fragment), NULL, 0},
 };
 const lao_shader *const gl_frame_shaders[GL_FRAME_STEPS] = {&shaders[0], &shaders[1], &shaders[2],
                                                             &shaders[3], &shaders[4]};
