@@ -746,6 +746,8 @@ static uint32_t lao__gl_stage_text(const lao__gl *gl, const lao_shader *shader,
     }
     for (i = 0; i < lao_shader_prologue_count; i++)
         lines[count++] = lao_shader_prologue[i];
+    for (i = 0; i < shader->prologue_count; i++)
+        lines[count++] = shader->prologue[i];
     for (i = 0; i < stage->line_count; i++)
         lines[count++] = stage->lines[i];
     return count;
@@ -755,9 +757,9 @@ static lao_result lao__gl_stage_make(const lao__gl *gl, const lao_shader *shader
                                      const lao_shader_stage *stage, lao__gl_enum type,
                                      const int32_t *values, lao__gl_uint *name) {
     char text[LAO_MAX_CONSTANTS][LAO__GL_CONSTANT_SIZE], log[LAO__GL_LOG_SIZE] = "";
-    size_t size =
-        (LAO__GL_HEAD + LAO_MAX_CONSTANTS + lao_shader_prologue_count + stage->line_count) *
-        sizeof(char *);
+    size_t size = (LAO__GL_HEAD + LAO_MAX_CONSTANTS + lao_shader_prologue_count +
+                   shader->prologue_count + stage->line_count) *
+                  sizeof(char *);
     const char **lines = (const char **)lao__gl_allocate(gl, size);
     lao__gl_int done = 0;
     uint32_t count;
@@ -788,8 +790,9 @@ static lao_result lao__gl_link(const lao__gl *gl, const lao_shader *shader, cons
     if (!vertex)
         return lao__gl_fail(gl->host, LAO_LOG_GRAPH_BROKEN, "shader %s has no vertex stage",
                             shader->name);
+    /* both stages with the same prologue: the linker compares their blocks */
     result =
-        lao__gl_stage_make(gl, vertex, &vertex->vertex, LAO__GL_VERTEX_SHADER, values, &stages[0]);
+        lao__gl_stage_make(gl, shader, &vertex->vertex, LAO__GL_VERTEX_SHADER, values, &stages[0]);
     if (!result)
         result = lao__gl_stage_make(gl, shader, &shader->fragment, LAO__GL_FRAGMENT_SHADER, values,
                                     &stages[1]);

@@ -362,6 +362,26 @@ static void history_is_counted(void **state) {
     end(&f);
 }
 
+static void world_undoes_the_view(void **state) {
+    fixture f;
+    uint32_t seed = 7;
+    (void)state;
+    begin(&f);
+    for (int turn = 0; turn < 50; turn++) {
+        lao_v3 p = lao_v3_make(3, -5, 7), q;
+        for (int c = 0; c < 4; c++) {
+            for (int r = 0; r < 3; r++) {
+                f.frame.camera.view[c * 4 + r] =
+                    (float)core_between(&seed, -3, 3) + (c == r ? 6.0f : 0.0f);
+            }
+        }
+        assert_int_equal(lao_render(f.context, &f.frame), LAO_OK);
+        q = lao_transform(core_seen.frame.world, lao_transform(core_seen.frame.view, p));
+        assert_true(lao_v3_dot(lao_v3_sub(p, q), lao_v3_sub(p, q)) < 1e-9f);
+    }
+    end(&f);
+}
+
 static void wrong_objects(void **state) {
     fixture f;
     lao_object none = {0};
@@ -496,6 +516,7 @@ int main(void) {
         cmocka_unit_test(sets_that_occlude_each_other),
         cmocka_unit_test(the_scene_holds_the_object),
         cmocka_unit_test(history_is_counted),
+        cmocka_unit_test(world_undoes_the_view),
         cmocka_unit_test(wrong_objects),
         cmocka_unit_test(an_update_keeps_other_buffers),
         cmocka_unit_test(nothing_is_left_of_a_failure),

@@ -28,6 +28,7 @@ static const char *const lines_fragment[] = {"flat in vec4 t_color;\n",
                                              "    t_depth = vec4(gl_FragCoord.z);\n",
                                              "}\n"};
 static const char *const over_fragment[] = {
+    "LAO_SETTINGS_BLOCK(2)\n",
     "uniform sampler2D t_depth;\n",
     "uniform sampler2D t_nothing;\n",
     "layout(location = 0) out vec4 t_out;\n",
@@ -69,11 +70,13 @@ static const lao_texture_type images[] = {LAO_TEXTURE_2D, LAO_TEXTURE_2D, LAO_TE
 #define NO_STAGE                                                                                   \
     { NULL, 0, NULL, 0 }
 static const lao_shader shaders[GL_FRAME_STEPS] = {
-    {"t_lines", NULL, 0, line_names, buffers, 2, 3, STAGE(lines_vertex), STAGE(lines_fragment)},
-    {"t_over", over_constants, 1, over_names, images, 2, 1, NO_STAGE, STAGE(over_fragment)},
-    {"t_history", NULL, 0, history_names, images, 3, 1, NO_STAGE, STAGE(history_fragment)},
-    {"t_depth", NULL, 0, depth_names, images, 1, 0, NO_STAGE, STAGE(depth_fragment)},
-    {"t_present", NULL, 0, present_names, images, 1, 1, NO_STAGE, STAGE(present_fragment)},
+    {"t_lines", NULL, 0, line_names, buffers, 2, 3, STAGE(lines_vertex), STAGE(lines_fragment),
+     NULL, 0},
+    {"t_over", over_constants, 1, over_names, images, 2, 1, NO_STAGE, STAGE(over_fragment), NULL,
+     0},
+    {"t_history", NULL, 0, history_names, images, 3, 1, NO_STAGE, STAGE(history_fragment), NULL, 0},
+    {"t_depth", NULL, 0, depth_names, images, 1, 0, NO_STAGE, STAGE(depth_fragment), NULL, 0},
+    {"t_present", NULL, 0, present_names, images, 1, 1, NO_STAGE, STAGE(present_fragment), NULL, 0},
 };
 const lao_shader *const gl_frame_shaders[GL_FRAME_STEPS] = {&shaders[0], &shaders[1], &shaders[2],
                                                             &shaders[3], &shaders[4]};
@@ -82,6 +85,7 @@ static const lao_pass_row rows[GL_FRAME_STEPS] = {
     {"lines",
      LAO_PASS_DRAW_LINES,
      "t_lines",
+     0,
      LAO_STAGE_DRAW,
      LAO_SCOPE_PER_SET,
      LAO_REPEAT_NONE,
@@ -95,6 +99,7 @@ static const lao_pass_row rows[GL_FRAME_STEPS] = {
     {"over",
      LAO_PASS_FULLSCREEN,
      "t_over",
+     0,
      LAO_STAGE_DRAW,
      LAO_SCOPE_FRAME,
      LAO_REPEAT_NONE,
@@ -108,6 +113,7 @@ static const lao_pass_row rows[GL_FRAME_STEPS] = {
     {"history",
      LAO_PASS_FULLSCREEN,
      "t_history",
+     0,
      LAO_STAGE_DRAW,
      LAO_SCOPE_FRAME,
      LAO_REPEAT_NONE,
@@ -121,6 +127,7 @@ static const lao_pass_row rows[GL_FRAME_STEPS] = {
     {"depth",
      LAO_PASS_FULLSCREEN,
      "t_depth",
+     0,
      LAO_STAGE_DRAW,
      LAO_SCOPE_FRAME,
      LAO_REPEAT_NONE,
@@ -134,6 +141,7 @@ static const lao_pass_row rows[GL_FRAME_STEPS] = {
     {"present",
      LAO_PASS_FULLSCREEN,
      "t_present",
+     0,
      LAO_STAGE_DRAW,
      LAO_SCOPE_FRAME,
      LAO_REPEAT_NONE,
