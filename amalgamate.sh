@@ -12,7 +12,7 @@ cd "$(dirname "$0")"
 
 # Shaders by module; a module's header is where its shared text is.
 MODULES="lines"
-lines_shaders="fullscreen import_depth export_depth cover lines level_zero level_up occlusion smooth shade resolve present"
+lines_shaders="fullscreen import_depth export_depth cover lines level_zero level_one level_up occlusion smooth shade resolve present"
 lines_header="" # lineao.h's text stands in front of all
 
 work=$(mktemp -d)
