@@ -10,7 +10,7 @@ LC_ALL=C
 export LC_ALL
 cd "$(dirname "$0")"
 
-SHADERS="fullscreen import_depth export_depth cover lines level_zero level_up occlusion smooth_x smooth_y shade resolve present"
+SHADERS="fullscreen import_depth export_depth cover lines lines_rim lines_halo level_zero level_up occlusion smooth_x smooth_y shade resolve present"
 HEADERS="lineao.h" # modules follow: sdfvessel.h vesselsurface.h flow4d.h
 
 work=$(mktemp -d)
@@ -75,7 +75,7 @@ names() { # second and further arguments of a macro: names MACRO file
 
 make_shader() { # arrays and the table row of one shader
     name=$1
-    strip <"shaders/$name.glsl" |
+    awk '/^LAO_INCLUDE / {while ((getline line < ("shaders/" $2)) > 0) print line; next} {print}' "shaders/$name.glsl" | strip |
         awk -v levels="$work/levels" '/^LAO_GENERATED_LEVELS$/ {while ((getline line < levels) > 0) print line; next} {print}' \
             >"$work/$name.body"
     has_vertex=$(grep -c '^#ifdef LAO_VERTEX' "$work/$name.body" || true)
