@@ -595,7 +595,7 @@ typedef struct lao_lines_desc {
     uint32_t point_count;
     const uint32_t *offsets; /* line_count + 1 indices of points; NULL: one line of all points */
     const float *points;     /* 3 * point_count, mm */
-    const float *times;      /* (Optional) point_count, ms */
+    const float *times;      /* (Optional) point_count, ms; NaN: never; absent: 0 */
     const uint8_t *colors;   /* (Optional) 4 * point_count, RGBA, display values */
     float color[4];          /* without `colors`: one colour, display values 0..1; all zero: sand */
 } lao_lines_desc;
@@ -3800,13 +3800,18 @@ typedef struct lao__texels {
     uint64_t count;
 } lao__texels;
 
+/* A time that is none, or too large to be told from a ghost's, is never reached. */
+static float lao__time(float time) {
+    return time > -1.0e30f && time < 1.0e30f ? time : 1.0e30f;
+}
+
 static void lao__texel(lao__texels *out, const lao_lines_desc *desc, uint32_t position,
                        uint32_t attribute, int ghost) {
     if (out->points) {
         float *p = out->points + 4 * out->count;
         uint8_t *c = out->colors + 4 * out->count;
         memcpy(p, desc->points + 3 * (size_t)position, 3 * sizeof *p);
-        p[3] = ghost ? LAO_GHOST_TIME : desc->times ? desc->times[attribute] : 0.0f;
+        p[3] = ghost ? LAO_GHOST_TIME : desc->times ? lao__time(desc->times[attribute]) : 0.0f;
         if (desc->colors) {
             memcpy(c, desc->colors + 4 * (size_t)attribute, 4);
         } else {

@@ -2,7 +2,9 @@
 
 #include "report.h"
 #include "scene.h"
+#include "video.h"
 
+#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -39,7 +41,7 @@ typedef struct flag_row {
 
 // clang-format off
 static const flag_row flags[] = {
-    {"--out", "-o", "FILE.png", FLAG_TEXT, BOTH, ALL(out), NULL, "the picture; with --frames a pattern (out_%04d.png, first = 0)"},
+    {"--out", "-o", "FILE.png", FLAG_TEXT, BOTH, ALL(out), NULL, "the picture; with --frames a pattern (out_%04d.png, first = 0), or a video: .mp4, .webm, .gif"},
     {"--scene", NULL, "NAME", FLAG_SCENE, BOTH, ALL(scene), NULL, "embedded scene, when no FILE is given (aorta)"},
     {"--lines", NULL, "N", FLAG_COUNT, BOTH, ALL(lines), NULL, "lines of the embedded scene"},
     {"--size", NULL, "WxH", FLAG_SIZE, BOTH, ALL(size), NULL, "pixels (render: 1280x960, compare: 640x480)"},
@@ -50,8 +52,9 @@ static const flag_row flags[] = {
     {"--save-camera", NULL, "FILE.json", FLAG_TEXT, CLI_RENDER, ALL(save_camera), NULL, "write the camera that was used"},
     {"--view", NULL, "NAME", FLAG_CHOICE, BOTH, ALL(view), "axial|coronal|sagittal|iso", "direction of the automatic camera: axial, coronal, sagittal or iso"},
     {"--ortho", NULL, NULL, FLAG_SWITCH, BOTH, ALL(ortho), NULL, "make the automatic camera orthographic"},
-    {"--time", NULL, "MS", FLAG_NUMBER, BOTH, ALL(time), NULL, "the time to show (0)"},
-    {"--frames", NULL, "N", FLAG_COUNT, CLI_RENDER, ALL(frames), NULL, "a sequence of pictures, its time running over that of the data"},
+    {"--time", NULL, "MS", FLAG_NUMBER, BOTH, ALL(time), NULL, "show this time: of lines with times the trails (trail taper, unless set)"},
+    {"--frames", NULL, "N", FLAG_COUNT, CLI_RENDER, ALL(frames), NULL, "a sequence of pictures or a video over one period, or from the first time to the last"},
+    {"--fps", NULL, "N", FLAG_COUNT, CLI_RENDER, ALL(fps), NULL, "frames per second of a video (25)"},
     {"--dump", NULL, "FILE.exr", FLAG_TEXT, CLI_RENDER, ALL(dump), NULL, "every image of the frame graph as 32-bit floats (OpenEXR)"},
     {"--timings", NULL, "FILE.json", FLAG_TEXT, CLI_RENDER, ALL(timings), NULL, "milliseconds of the frame and of each pass"},
     {"--json", NULL, NULL, FLAG_SWITCH, CLI_INFO | CLI_COMPARE, ALL(json), NULL, "one JSON object on standard output"},
@@ -343,6 +346,12 @@ static bool check(const parser *p) {
         return cli_fail("info: no FILE is given; write lineao info FILE...");
     if (p->command == CLI_RENDER && !o->out && !o->dump && !o->timings && !o->save_camera)
         return cli_fail("render: no output is asked for; write -o out.png");
+    if (cli_is_video(o->out) && !o->frames)
+        return cli_fail("%s: a video has frames; write --frames N", o->out);
+    if (cli_is_video(o->out) && o->background[3] < 1)
+        return cli_fail("--background: a video cannot be transparent; write pictures instead");
+    if (o->fps && !cli_is_video(o->out))
+        return cli_fail("--fps: is for videos; write -o out.mp4, out.webm or out.gif");
     if (o->file_count > 0 && (o->scene || o->lines))
         return cli_fail("%s: is for embedded scenes, and a FILE is given; %s",
                         o->scene ? "--scene" : "--lines",
@@ -361,6 +370,7 @@ static bool check(const parser *p) {
 bool cli_parse(cli_command_bit command, int argc, char **argv, cli_options *out) {
     memset(out, 0, sizeof *out);
     out->backend = "gl";
+    out->time = NAN;
     out->size[0] = command == CLI_COMPARE ? 640 : 1280;
     out->size[1] = command == CLI_COMPARE ? 480 : 960;
     out->all.colormap = "viridis";

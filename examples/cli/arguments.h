@@ -28,9 +28,10 @@ typedef struct cli_options {
     cli_source *files; /* owned */
     uint32_t file_count;
     const char *scene, *out, *dump, *timings, *backend, *camera, *save_camera, *view;
-    uint32_t lines, frames; /* 0: not given */
+    uint32_t lines, frames, fps; /* 0: not given */
     uint32_t size[2];
-    double time, background[4];
+    double time; /* ms; NaN: not given */
+    double background[4];
     bool ortho, json, help;
 } cli_options;
 

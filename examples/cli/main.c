@@ -30,6 +30,8 @@ static const command_row commands[] = {
      "  lineao render bundle.trk -o out.png --width 0.3 --view sagittal\n"
      "  lineao render a.trk --color '#d08040' b.tck --width 1 -o two.png   each FILE its own look\n"
      "  lineao render bundle.trk --color fa --colormap inferno -o fa.png\n"
+     "  lineao render flow.vtp --time 120 -o systole.png               trails around 120 ms\n"
+     "  lineao render flow.vtp --frames 200 --period 833 -o beat.mp4   one heart beat, in ffmpeg\n"
      "  lineao render --preset classic --strength 2 -o classic.png     settings are flags\n"
      "  lineao render --ssaa 1 --dump frame.exr --backend vk           every image as numbers\n"},
     {"compare", CLI_COMPARE, cli_compare, "[FILE [FLAG...]]... [-o sheet.png] [--json]",
