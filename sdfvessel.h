@@ -67,6 +67,11 @@ extern "C" {
     X(TREE_SEGMENT, LAO_ERROR_INVALID_ARGUMENT, "a segment names a node that does not exist")      \
     X(TREE_ATTRIBUTE, LAO_ERROR_INVALID_ARGUMENT, "an attribute has no name or no values")         \
     X(LAYOUT_PH, LAO_ERROR_INVALID_ARGUMENT, "p_h is negative or no number")                       \
+    X(GRID_CELLS, LAO_ERROR_INVALID_ARGUMENT,                                                      \
+      "the grid needs 16 to 512 cells along its longest axis and 2^24 in all at most")             \
+    X(GRID_LISTS, LAO_ERROR_INVALID_ARGUMENT,                                                      \
+      "more than 2^24 segments or entries of cell lists; fewer cells make shorter lists")          \
+    X(GRID_TREE, LAO_ERROR_INVALID_ARGUMENT, "the grid was built from another tree")               \
     X(RADIUS_MISSING, LAO_OK,                                                                      \
       "nodes have no radius (negative, no number or beyond 1e9 mm): 0 is taken")                   \
     X(RADIUS_ZERO, LAO_OK, "nodes have radius 0")                                                  \
@@ -279,6 +284,83 @@ typedef struct sdv_svg_desc {
 SDV_API int sdv_layout_write_svg(const sdv_reduced *reduced, const sdv_layout *layout,
                                  const sdv_svg_desc *desc, const sdv_writer *writer);
 
+/* ------------------------------------------------------------------------------------------------
+ * the distance field on a grid */
+
+typedef struct sdv_grid_desc {
+    uint32_t resolution; /* cells along the longest axis, 16 .. 512; 0: 128 */
+    const float *origin; /* (Optional) keep an earlier grid's box: its origin (3), cell and size; */
+    float cell;          /* the tree must lie inside. NULL: the bounds of all balls and 2 cells */
+    uint32_t size[3];
+} sdv_grid_desc;
+
+/* The field of a tree (METHODS 5), ready for upload as texel buffers. A cone is a segment, or
+   behind them a node that no segment touches (a ball); `cone_count` may thus exceed
+   tree.segment_count. Cell (x, y, z) has index x + size[0] (y + size[1] z) and lists, in ascending
+   order, the cones whose signed distance at its centre is at most 2 cells, inside ones too. Hence,
+   from any point of the cell, every surface nearer than 1.13 cells is in its list, and an empty
+   list means that there is none. Texel of a cell: x  distance at the centre, mm: exact where the
+   list is not empty; else that to the list of the nearest cell that has one, d <= x <= d + 1.74
+   cells y  that nearest cell (itself where occupied; ties: the lowest index) z  occupied: place of
+   its list in `ids`; else how far a ray may go from any point of the cell, mm w  length of the list
+   Memory: 20 bytes a cell, 4 an entry of the lists, 40 a cone. */
+typedef struct sdv_grid {
+    lao_v3 origin; /* lower corner, mm */
+    float cell;    /* mm */
+    uint32_t size[3];
+    uint32_t cell_count, id_count, cone_count;
+    lao_v4 *cells;        /* cell_count */
+    float *ids;           /* id_count: numbers of cones */
+    lao_v4 *cones;        /* 2 per cone: centre and radius of both ends (parent, child) */
+    uint32_t *cone_nodes; /* 2 per cone: the nodes */
+    uint32_t *layer;      /* private: per cell x + 65536 y of the nearest occupied one at its z */
+    uint32_t rebuilt;     /* sdv_grid_update: 1 when it had to build everything anew */
+    lao_allocator allocator; /* private */
+} sdv_grid;
+
+/* Builds the field. Work is split by layers, so the result does not depend on threads. Fails with
+   NULL_ARGUMENT, MEMORY, CANCELLED, GRID_CELLS, GRID_LISTS. `desc` NULL: defaults. */
+SDV_API lao_result sdv_grid_build(const sdv_host *host, const sdv_tree *tree,
+                                  const sdv_grid_desc *desc, sdv_grid *grid);
+/* After the host changed tree->nodes[nodes[i]], i < count: rebuilds what depends on them, to the
+   same bits as sdv_grid_build in the same box. A tree that has left the box gets a new one
+   (`rebuilt`). On failure, or when cancelled, the grid is as before. */
+SDV_API lao_result sdv_grid_update(const sdv_host *host, const sdv_tree *tree,
+                                   const uint32_t *nodes, uint32_t count, sdv_grid *grid);
+SDV_API void sdv_grid_free(sdv_grid *grid);
+/* Signed distance at any point, mm: exact within 1.13 cells of a surface and inside, else at
+   most 3.5 cells too great (mostly not at all). `cone` (Optional) gets the nearest one. Thread:
+   any. */
+SDV_API float sdv_grid_distance(const sdv_grid *grid, lao_v3 p, uint32_t *cone);
+/* The same by going through all cones: the oracle. */
+SDV_API float sdv_cones_distance(const lao_v4 *cones, uint32_t count, lao_v3 p, uint32_t *cone);
+
+enum { SDV_TRACE_NEAREST = 1 /* also d_min and t_min */ };
+
+typedef struct sdv_ray {
+    lao_v3 origin, direction; /* mm; unit */
+    uint32_t flags;           /* SDV_TRACE_... */
+} sdv_ray;
+
+typedef struct sdv_hit {
+    uint32_t cone;   /* SDV_NONE: no hit */
+    float t;         /* mm along the ray */
+    lao_v3 position; /* mm */
+    lao_v3 normal;   /* unit, towards the viewer: the field's gradient, turned round when the ray
+                        starts inside a vessel */
+    float d_min; /* mm; no hit: least distance of the ray to the tree; hit: least local minimum on
+                    the way (a near miss); SDV_FAR: none */
+    float t_min; /* where that is */
+    uint32_t inside; /* non-zero: the ray starts inside a vessel and hits its wall from within */
+    uint32_t steps;
+} sdv_hit;
+
+/* Sphere tracing (METHODS 5.3), the oracle of the shaders: the first point of the ray, t >= 0, on
+   the surface, |distance| < 1e-3 cell there. No vessel is missed, however thin. A ray that starts
+   inside a vessel goes to where it leaves the union: the viewer sees the inner wall. Thread: any.
+ */
+SDV_API void sdv_trace(const sdv_grid *grid, const sdv_ray *ray, sdv_hit *hit);
+
 #ifdef __cplusplus
 }
 #endif
@@ -288,15 +370,28 @@ SDV_API int sdv_layout_write_svg(const sdv_reduced *reduced, const sdv_layout *l
    lineao.h's (same rules: see there). */
 /* SDV_SHARED_BEGIN */
 /* ---- round cones (L19 3.2 with METHODS 4): a, b = centre and radius of the two ends, mm */
-/* Where p is in the plane of the axis: x along it from a, y away from it; s its length, l and d the
-   tangent's length and rise; part: -1 nearest to ball a, 1 to ball b, 0 to the cone between. */
+/* A point seen from a cone, in the plane of the cone's axis and the point. */
 struct sdv_cone_point {
-    lao_v3 axis, away; /* unit; away is 0 on the axis */
-    float x, y, s, l, d, part;
+    float distance; /* signed, mm */
+    float part;     /* -1: ball a is nearest, 1: ball b, 0: the cone between them */
+    float x, y;     /* between: along the axis from a, and away from it */
+    float s, l, d;  /* between: length of the axis, of the tangent; radius of a less that of b */
+    lao_v3 axis;    /* between: unit, from a to b */
+    lao_v3 away;    /* from the axis or the ball's centre to the point, not unit */
+    float length;   /* of away */
 };
 #ifndef LAO_GLSL
 typedef struct sdv_cone_point sdv_cone_point;
 #endif
+LAO_FN sdv_cone_point sdv_cone_point_ball(sdv_cone_point c, lao_v3 p, lao_v4 ball, float part) {
+    sdv_cone_point r = c;
+    r.away = lao_v3_sub(p, lao_v3_make(ball.x, ball.y, ball.z));
+    LAO_EXACT float length = lao_sqrt(lao_v3_dot(r.away, r.away));
+    r.length = length;
+    r.distance = length - ball.w;
+    r.part = part;
+    return r;
+}
 LAO_FN sdv_cone_point sdv_cone_point_make(lao_v3 p, lao_v4 a, lao_v4 b) {
     sdv_cone_point c;
     lao_v3 q = lao_v3_sub(p, lao_v3_make(a.x, a.y, a.z));
@@ -306,47 +401,43 @@ LAO_FN sdv_cone_point sdv_cone_point_make(lao_v3 p, lao_v4 a, lao_v4 b) {
     LAO_EXACT float least = lao_abs(d) + 1.0e-6f * lao_max(a.w, b.w);
     c.s = s;
     c.d = d;
-    c.axis = lao_v3_make(0.0f, 0.0f, 0.0f);
-    c.away = c.axis;
+    c.l = 0.0f;
     c.x = 0.0f;
     c.y = 0.0f;
-    c.l = 0.0f;
+    c.axis = ab;
     if (!(s > least)) { /* one ball holds the other */
-        c.part = d < 0.0f ? 1.0f : -1.0f;
-        return c;
+        if (d < 0.0f) {
+            return sdv_cone_point_ball(c, p, b, 1.0f);
+        }
+        return sdv_cone_point_ball(c, p, a, -1.0f);
     }
     LAO_EXACT float inverse = 1.0f / s;
-    lao_v3 axis = lao_v3_scale(ab, inverse);
-    LAO_EXACT float x = lao_v3_dot(q, axis);
-    lao_v3 away = lao_v3_along(q, axis, -x);
-    LAO_EXACT float y = lao_sqrt(lao_v3_dot(away, away));
+    c.axis = lao_v3_scale(ab, inverse);
+    LAO_EXACT float x = lao_v3_dot(q, c.axis);
+    c.away = lao_v3_along(q, c.axis, -x);
+    LAO_EXACT float y = lao_sqrt(lao_v3_dot(c.away, c.away));
     LAO_EXACT float l = lao_sqrt((s - d) * (s + d));
     LAO_EXACT float u = (l * x - d * y) * inverse;
-    c.axis = axis;
-    c.away = y > 0.0f ? lao_v3_scale(away, 1.0f / y) : c.away;
+    if (u < 0.0f) {
+        return sdv_cone_point_ball(c, p, a, -1.0f);
+    }
+    if (u > l) {
+        return sdv_cone_point_ball(c, p, b, 1.0f);
+    }
+    LAO_EXACT float distance = (d * x + l * y) * inverse - a.w;
+    c.distance = distance;
+    c.part = 0.0f;
     c.x = x;
     c.y = y;
     c.l = l;
-    c.part = u < 0.0f ? -1.0f : (u > l ? 1.0f : 0.0f);
+    c.length = y;
     return c;
-}
-LAO_FN float sdv_ball(lao_v3 p, lao_v4 ball) {
-    lao_v3 q = lao_v3_sub(p, lao_v3_make(ball.x, ball.y, ball.z));
-    LAO_EXACT float r = lao_sqrt(lao_v3_dot(q, q)) - ball.w;
-    return r;
 }
 /* Signed distance in mm, exact outside and inside; one ball when it holds the other (Eqs. 1-3,
    corrected). */
 LAO_FN float sdv_round_cone(lao_v3 p, lao_v4 a, lao_v4 b) {
     sdv_cone_point c = sdv_cone_point_make(p, a, b);
-    if (c.part < 0.0f) {
-        return sdv_ball(p, a);
-    }
-    if (c.part > 0.0f) {
-        return sdv_ball(p, b);
-    }
-    LAO_EXACT float r = (c.d * c.x + c.l * c.y) / c.s - a.w;
-    return r;
+    return c.distance;
 }
 /* Any unit vector at a right angle to the unit vector v. */
 LAO_FN lao_v3 sdv_perpendicular(lao_v3 v) {
@@ -365,17 +456,22 @@ LAO_FN lao_v3 sdv_perpendicular(lao_v3 v) {
    ball and on the axis any of the possible ones. */
 LAO_FN lao_v3 sdv_round_cone_gradient(lao_v3 p, lao_v4 a, lao_v4 b) {
     sdv_cone_point c = sdv_cone_point_make(p, a, b);
-    lao_v3 any = lao_v3_make(0.0f, 0.0f, 1.0f);
-    if (c.part < 0.0f) {
-        return lao_v3_unit(lao_v3_sub(p, lao_v3_make(a.x, a.y, a.z)), any);
+    if (c.part != 0.0f) {
+        return lao_v3_unit(c.away, lao_v3_make(0.0f, 0.0f, 1.0f));
     }
-    if (c.part > 0.0f) {
-        return lao_v3_unit(lao_v3_sub(p, lao_v3_make(b.x, b.y, b.z)), any);
-    }
-    lao_v3 away = c.y > 0.0f ? c.away : sdv_perpendicular(c.axis);
+    lao_v3 away = lao_v3_unit(c.away, sdv_perpendicular(c.axis));
     LAO_EXACT float along = c.d / c.s;
-    LAO_EXACT float out = c.l / c.s;
-    return lao_v3_unit(lao_v3_along(lao_v3_scale(away, out), c.axis, along), any);
+    LAO_EXACT float outward = c.l / c.s;
+    return lao_v3_unit(lao_v3_along(lao_v3_scale(away, outward), c.axis, along), away);
+}
+/* Slope of the distance along a unit direction: gradient times direction. */
+LAO_FN float sdv_cone_slope(sdv_cone_point c, lao_v3 direction) {
+    LAO_EXACT float away = lao_v3_dot(c.away, direction) / lao_max(c.length, 1.0e-30f);
+    if (c.part != 0.0f) {
+        return away;
+    }
+    LAO_EXACT float slope = (c.d * lao_v3_dot(c.axis, direction) + c.l * away) / c.s;
+    return slope;
 }
 
 /* ---- colours */
@@ -396,6 +492,257 @@ LAO_FN lao_v2 sdv_radial(float h, float s) {
     LAO_EXACT float x = reach * lao_cos_turns(h);
     LAO_EXACT float y = reach * lao_sin_turns(h);
     return lao_v2_make(x, y);
+}
+/* ---- grid and tracing (L19 3.2 with METHODS 5) */
+#define SDV_FAR 1.0e30f
+#define SDV_MAX_STEPS 1024
+/* A box of cubic cells: lower corner, edge of a cell in mm, cells along each axis. */
+struct sdv_box {
+    lao_v3 origin;
+    float cell;
+    lao_v3 size;
+};
+#ifndef LAO_GLSL
+typedef struct sdv_box sdv_box;
+#endif
+LAO_FN lao_v3 sdv_cell_centre(sdv_box box, lao_uint x, lao_uint y, lao_uint z) {
+    LAO_EXACT float cx = box.origin.x + (LAO_F(x) + 0.5f) * box.cell;
+    LAO_EXACT float cy = box.origin.y + (LAO_F(y) + 0.5f) * box.cell;
+    LAO_EXACT float cz = box.origin.z + (LAO_F(z) + 0.5f) * box.cell;
+    return lao_v3_make(cx, cy, cz);
+}
+/* Index of the cell that holds p, or of the one nearest to it. */
+LAO_FN lao_int sdv_cell_at(sdv_box box, lao_v3 p) {
+    LAO_EXACT float x = lao_floor((p.x - box.origin.x) / box.cell);
+    LAO_EXACT float y = lao_floor((p.y - box.origin.y) / box.cell);
+    LAO_EXACT float z = lao_floor((p.z - box.origin.z) / box.cell);
+    lao_int ix = LAO_I(lao_min(lao_max(x, 0.0f), box.size.x - 1.0f));
+    lao_int iy = LAO_I(lao_min(lao_max(y, 0.0f), box.size.y - 1.0f));
+    lao_int iz = LAO_I(lao_min(lao_max(z, 0.0f), box.size.z - 1.0f));
+    return ix + LAO_I(box.size.x) * (iy + LAO_I(box.size.y) * iz);
+}
+/* What a cell lists: cones up to this distance from its centre, mm. */
+LAO_FN float sdv_list_reach(float cell) {
+    return 2.0f * cell;
+}
+/* From anywhere in a cell, what is nearer than this is in its list: 2 - sqrt(3) / 2, less rounding.
+ */
+LAO_FN float sdv_near_reach(float cell) {
+    return 1.125f * cell;
+}
+/* How far a ray may go from anywhere in an empty cell whose centre is `apart` mm from the nearest
+   centre of an occupied cell. The surface is 2 - sqrt(3) / 2 cells or more behind the last empty
+   cell on the way to it: apart + 2 - sqrt(3) from the centre, another sqrt(3) / 2 less from p. */
+LAO_FN float sdv_far_step(float apart, float cell) {
+    LAO_EXACT float step = apart - 0.6f * cell;
+    return lao_max(step, sdv_near_reach(cell));
+}
+/* Part of the ray inside the box: from x to y, x > y where it misses. */
+LAO_FN float sdv_ray_slope(float d) {
+    LAO_EXACT float r = 1.0f / (lao_abs(d) < 1.0e-12f ? (d < 0.0f ? -1.0e-12f : 1.0e-12f) : d);
+    return r;
+}
+LAO_FN lao_v2 sdv_ray_box(lao_v3 origin, lao_v3 direction, sdv_box box) {
+    lao_v3 slope = lao_v3_make(sdv_ray_slope(direction.x), sdv_ray_slope(direction.y),
+                               sdv_ray_slope(direction.z));
+    LAO_EXACT float x0 = (box.origin.x - origin.x) * slope.x;
+    LAO_EXACT float y0 = (box.origin.y - origin.y) * slope.y;
+    LAO_EXACT float z0 = (box.origin.z - origin.z) * slope.z;
+    LAO_EXACT float x1 = (box.origin.x + box.size.x * box.cell - origin.x) * slope.x;
+    LAO_EXACT float y1 = (box.origin.y + box.size.y * box.cell - origin.y) * slope.y;
+    LAO_EXACT float z1 = (box.origin.z + box.size.z * box.cell - origin.z) * slope.z;
+    LAO_EXACT float from =
+        lao_max(lao_max(lao_min(x0, x1), lao_min(y0, y1)), lao_max(lao_min(z0, z1), 0.0f));
+    LAO_EXACT float to = lao_min(lao_min(lao_max(x0, x1), lao_max(y0, y1)), lao_max(z0, z1));
+    return lao_v2_make(from, to);
+}
+
+/* The nearest of the cones of a list at a point of a ray, and how far the ray may go before it can
+   meet any of them. */
+struct sdv_near {
+    float distance, advance, cone;
+};
+#ifndef LAO_GLSL
+typedef struct sdv_near sdv_near;
+#endif
+LAO_FN sdv_near sdv_near_start(float reach) {
+    sdv_near n;
+    n.distance = SDV_FAR;
+    n.advance = reach;
+    n.cone = -1.0f;
+    return n;
+}
+/* Distance of p to the cone (x), and where the tangent of the distance along the ray falls to 0
+   (y): a cone is convex, so its distance along a ray is too, and the ray cannot meet it sooner. */
+LAO_FN lao_v2 sdv_cone_along(lao_v3 p, lao_v3 direction, lao_v4 a, lao_v4 b) {
+    sdv_cone_point c = sdv_cone_point_make(p, a, b);
+    LAO_EXACT float step = c.distance / lao_max(-sdv_cone_slope(c, direction), 1.0e-6f);
+    return lao_v2_make(c.distance, step);
+}
+LAO_FN sdv_near sdv_near_add(sdv_near n, lao_v3 p, lao_v3 direction, lao_v4 a, lao_v4 b,
+                             float cone) {
+    sdv_near r = n;
+    lao_v2 along = sdv_cone_along(p, direction, a, b);
+    if (along.x < n.distance) {
+        r.distance = along.x;
+        r.cone = cone;
+    }
+    r.advance = lao_min(n.advance, along.y);
+    return r;
+}
+/* Least distance of the whole line to the cone (x, mm; negative: it passes through it) and where
+   (y): seen along the line, the cone is a flat round cone and the line a point. */
+LAO_FN lao_v2 sdv_line_nearest(lao_v3 origin, lao_v3 direction, lao_v4 a, lao_v4 b) {
+    lao_v3 qa = lao_v3_sub(lao_v3_make(a.x, a.y, a.z), origin);
+    lao_v3 qb = lao_v3_sub(lao_v3_make(b.x, b.y, b.z), origin);
+    LAO_EXACT float ta = lao_v3_dot(qa, direction);
+    LAO_EXACT float tb = lao_v3_dot(qb, direction);
+    lao_v3 fa = lao_v3_along(qa, direction, -ta);
+    lao_v3 fb = lao_v3_along(qb, direction, -tb);
+    lao_v4 pa = lao_v4_make(fa.x, fa.y, fa.z, a.w);
+    lao_v4 pb = lao_v4_make(fb.x, fb.y, fb.z, b.w);
+    lao_v3 zero = lao_v3_make(0.0f, 0.0f, 0.0f);
+    sdv_cone_point c = sdv_cone_point_make(zero, pa, pb);
+    if (c.part != 0.0f) {
+        return lao_v2_make(c.distance, c.part < 0.0f ? ta : tb);
+    }
+    LAO_EXACT float centre = (c.x - c.y * c.d / lao_max(c.l, 1.0e-30f)) / c.s;
+    LAO_EXACT float t = ta + (tb - ta) * lao_clamp01(centre);
+    return lao_v2_make(c.distance, t);
+}
+
+/* A ray under way. */
+struct sdv_march {
+    float t, end;         /* mm */
+    float before, older;  /* t of the last two samples */
+    float distance, cone; /* of the last sample */
+    float falling;        /* 1: the distance fell up to the last sample */
+    float d_min, t_min;   /* the least local minimum that was passed */
+    float inside;         /* 1: it started inside a vessel */
+    float steps;          /* samples so far */
+    float state;          /* SDV_MARCH_... */
+};
+#ifndef LAO_GLSL
+typedef struct sdv_march sdv_march;
+#endif
+#define SDV_MARCH_GOES 0.0f
+#define SDV_MARCH_HITS 1.0f
+#define SDV_MARCH_LEAVES 2.0f
+LAO_FN sdv_march sdv_march_start(lao_v2 span) {
+    sdv_march m;
+    m.t = span.x;
+    m.end = span.y;
+    m.before = 0.0f;
+    m.older = 0.0f;
+    m.distance = SDV_FAR;
+    m.cone = -1.0f;
+    m.falling = 1.0f;
+    m.d_min = SDV_FAR;
+    m.t_min = 0.0f;
+    m.inside = 0.0f;
+    m.steps = 0.0f;
+    m.state = span.x > span.y ? SDV_MARCH_LEAVES : SDV_MARCH_GOES;
+    return m;
+}
+/* Distance below which a point is on the surface. */
+LAO_FN float sdv_hit_distance(float cell) {
+    return 1.0e-3f * cell;
+}
+/* A local minimum between two points of the ray, by going to where the ray is nearest to the cone
+   that was nearest so far, a few times. */
+struct sdv_minimum {
+    float d, t;       /* the least distance so far and where */
+    float cone, last; /* to be looked at, -1: none; the one before */
+};
+#ifndef LAO_GLSL
+typedef struct sdv_minimum sdv_minimum;
+#endif
+#define SDV_MINIMUM_ROUNDS 3
+LAO_FN sdv_minimum sdv_minimum_start(float cone) {
+    sdv_minimum r;
+    r.d = SDV_FAR;
+    r.t = 0.0f;
+    r.cone = cone;
+    r.last = -1.0f;
+    return r;
+}
+/* a, b: the ends of r.cone; the minimum is in [low, high]. */
+LAO_FN sdv_minimum sdv_minimum_add(sdv_minimum r, lao_v3 origin, lao_v3 direction, lao_v4 a,
+                                   lao_v4 b, float low, float high) {
+    sdv_minimum n = r;
+    lao_v2 nearest = sdv_line_nearest(origin, direction, a, b);
+    LAO_EXACT float t = lao_min(lao_max(nearest.y, low), high);
+    LAO_EXACT float d = sdv_round_cone(lao_v3_along(origin, direction, t), a, b);
+    n.last = r.cone;
+    if (d < r.d) {
+        n.d = d;
+        n.t = t;
+    }
+    return n;
+}
+/* The sample at r.t decides whether there is a better cone. */
+LAO_FN sdv_minimum sdv_minimum_next(sdv_minimum r, sdv_near n) {
+    sdv_minimum next = r;
+    next.cone = n.distance < r.d && n.cone != r.last ? n.cone : -1.0f;
+    return next;
+}
+LAO_FN sdv_march sdv_march_minimum(sdv_march m, sdv_minimum found) {
+    sdv_march r = m;
+    if (found.d < m.d_min) {
+        r.d_min = found.d;
+        r.t_min = found.t;
+    }
+    return r;
+}
+/* Where a ray that misses the box is nearest to its middle. */
+LAO_FN float sdv_ray_middle(lao_v3 origin, lao_v3 direction, sdv_box box) {
+    lao_v3 middle = lao_v3_along(box.origin, box.size, 0.5f * box.cell);
+    LAO_EXACT float t = lao_v3_dot(lao_v3_sub(middle, origin), direction);
+    return lao_max(t, 0.0f);
+}
+/* The sample before this one was a local minimum of the distance. */
+LAO_FN bool sdv_march_passed(sdv_march m, sdv_near n) {
+    return m.falling > 0.5f && m.inside < 0.5f && n.distance > m.distance;
+}
+/* Goes on from a sample at m.t: `n` comes from the list of the cell there when it is `occupied`,
+   else of the nearest cell that has one (for its distance; or SDV_FAR when nobody wants d_min), and
+   `far_step` is the cell's. */
+LAO_FN sdv_march sdv_march_step(sdv_march m, sdv_near n, bool occupied, float far_step,
+                                float cell) {
+    sdv_march r = m;
+    r.falling = n.distance > m.distance ? 0.0f : 1.0f;
+    r.distance = n.distance;
+    r.cone = n.cone;
+    r.steps = m.steps + 1.0f;
+    LAO_EXACT float step = occupied ? n.advance : far_step;
+    if (occupied) {
+        if (m.steps < 0.5f && n.distance < 0.0f) {
+            r.inside = 1.0f;
+        }
+        LAO_EXACT float left = r.inside > 0.5f ? -n.distance : n.distance;
+        if (left < sdv_hit_distance(cell)) {
+            r.state = SDV_MARCH_HITS;
+            return r;
+        }
+        step = r.inside > 0.5f ? left : step; /* the ball inside the nearest cone */
+    }
+    r.older = m.before;
+    r.before = m.t;
+    r.t = m.t + step;
+    if (r.t > m.end) {
+        r.state = SDV_MARCH_LEAVES;
+    }
+    return r;
+}
+#define SDV_POLISH_ROUNDS 2
+/* Newton's step from a point close to the surface onto it: where the field's tangent is 0. */
+LAO_FN float sdv_polish(float t, float distance, lao_v3 gradient, lao_v3 direction, float cell) {
+    LAO_EXACT float slope = lao_v3_dot(gradient, direction);
+    LAO_EXACT float steep = lao_max(lao_abs(slope), 0.02f);
+    LAO_EXACT float step = distance / (slope < 0.0f ? steep : -steep);
+    LAO_EXACT float most = 0.1f * cell;
+    LAO_EXACT float r = t + lao_min(lao_max(step, -most), most);
+    return r;
 }
 /* SDV_SHARED_END */
 
@@ -1624,6 +1971,1028 @@ SDV_API int sdv_layout_write_svg(const sdv_reduced *reduced, const sdv_layout *l
         }
     }
     return stop ? stop : sdv__print(writer, "</g>\n</svg>\n");
+}
+
+/* ================================================================================================
+ * jobs */
+
+/* A piece of work in phases, for progress. */
+typedef struct sdv__work {
+    const sdv_host *host;
+    uint64_t done, total; /* items of all phases */
+} sdv__work;
+
+typedef struct sdv__batch {
+    void (*fn)(void *arg, uint32_t index);
+    void *arg;
+    uint32_t first;
+} sdv__batch;
+
+static void sdv__run_item(void *arg, uint32_t index) {
+    const sdv__batch *b = (const sdv__batch *)arg;
+    b->fn(b->arg, b->first + index);
+}
+
+/* fn(arg, 0 .. count - 1), as the host likes; progress after every 16. Non-zero: cancelled. */
+static int sdv__run(sdv__work *work, uint32_t count, void (*fn)(void *arg, uint32_t index),
+                    void *arg) {
+    const lao_job *job = work->host ? &work->host->job : NULL;
+    uint32_t first, i;
+    for (first = 0; first < count; first += 16) {
+        uint32_t n = count - first < 16 ? count - first : 16;
+        sdv__batch batch;
+        batch.fn = fn;
+        batch.arg = arg;
+        batch.first = first;
+        if (job && job->run) {
+            job->run(job->user, n, sdv__run_item, &batch);
+        } else {
+            for (i = 0; i < n; i++) {
+                fn(arg, first + i);
+            }
+        }
+        work->done += n;
+        if (job && job->progress && job->progress(job->user, work->done, work->total)) {
+            return 1;
+        }
+    }
+    return 0;
+}
+
+/* ================================================================================================
+ * grid */
+
+enum { SDV__AXIS = 512 };    /* most cells along an axis */
+#define SDV__EXACT 16777216u /* floats count to here */
+
+static sdv_box sdv__grid_box(const sdv_grid *g) {
+    sdv_box box;
+    box.origin = g->origin;
+    box.cell = g->cell;
+    box.size = lao_v3_make((float)g->size[0], (float)g->size[1], (float)g->size[2]);
+    return box;
+}
+static size_t sdv__row(const sdv_grid *g, uint32_t y, uint32_t z) {
+    return (size_t)g->size[0] * (y + (size_t)g->size[1] * z);
+}
+static size_t sdv__layer_size(const sdv_grid *g) {
+    return (size_t)g->size[0] * g->size[1];
+}
+
+/* ---- the box */
+static void sdv__ball_bounds(const lao_v4 *balls, uint32_t count, double low[3], double high[3]) {
+    uint32_t i, k;
+    for (i = 0; i < count; i++) {
+        const float *p = &balls[i].x;
+        for (k = 0; k < 3; k++) {
+            double a = (double)p[k] - (double)balls[i].w, b = (double)p[k] + (double)balls[i].w;
+            low[k] = i == 0 || a < low[k] ? a : low[k];
+            high[k] = i == 0 || b > high[k] ? b : high[k];
+        }
+    }
+}
+/* Cubic cells around all balls, and two more at every side. */
+static int sdv__grid_fit(const sdv_tree *tree, uint32_t resolution, sdv_grid *g) {
+    double low[3], high[3], most = 0;
+    float *origin = &g->origin.x;
+    uint32_t k;
+    if (resolution < 16 || resolution > SDV__AXIS) {
+        return 0;
+    }
+    sdv__ball_bounds(tree->nodes, tree->node_count, low, high);
+    for (k = 0; k < 3; k++) {
+        most = high[k] - low[k] > most ? high[k] - low[k] : most;
+    }
+    g->cell = most > 0 ? (float)(most / (double)(resolution - 4) * (1 + 1e-6)) : 1.0f;
+    g->cell = g->cell > 0.0f ? g->cell : 1.0f;
+    for (k = 0; k < 3; k++) {
+        g->size[k] = (uint32_t)ceil((high[k] - low[k]) / (double)g->cell) + 4;
+        origin[k] = (float)(0.5 * (low[k] + high[k]) - 0.5 * (double)g->size[k] * (double)g->cell);
+    }
+    return 1;
+}
+static int sdv__grid_frame(const sdv_tree *tree, const sdv_grid_desc *desc, sdv_grid *g) {
+    uint32_t k;
+    double cells = 1;
+    if (desc->origin) {
+        g->origin = lao_v3_make(desc->origin[0], desc->origin[1], desc->origin[2]);
+        g->cell = desc->cell;
+        memcpy(g->size, desc->size, sizeof g->size);
+    } else if (!sdv__grid_fit(tree, desc->resolution ? desc->resolution : 128, g)) {
+        return 0;
+    }
+    for (k = 0; k < 3; k++) {
+        cells *= (double)g->size[k];
+        if (g->size[k] < 1 || g->size[k] > SDV__AXIS) {
+            return 0;
+        }
+    }
+    if (!(cells <= SDV__EXACT && g->cell > 0.0f && g->cell < 1e30f)) {
+        return 0;
+    }
+    g->cell_count = (uint32_t)cells;
+    return 1;
+}
+/* Are all balls inside the box? */
+static int sdv__grid_holds(const sdv_grid *g, const sdv_tree *tree) {
+    double low[3], high[3];
+    const float *origin = &g->origin.x;
+    uint32_t k;
+    sdv__ball_bounds(tree->nodes, tree->node_count, low, high);
+    for (k = 0; k < 3; k++) {
+        double end = (double)origin[k] + (double)g->size[k] * (double)g->cell;
+        if (!(low[k] >= (double)origin[k] && high[k] <= end)) {
+            return 0;
+        }
+    }
+    return 1;
+}
+
+/* ---- cones */
+static int sdv__is_lone(const sdv_tree *tree, uint32_t node) {
+    return tree->parents[node] == SDV_NONE && tree->child_counts[node] == 0;
+}
+static uint32_t sdv__lone_count(const sdv_tree *tree) {
+    uint32_t i, n = 0;
+    for (i = 0; i < tree->node_count; i++) {
+        n += (uint32_t)sdv__is_lone(tree, i);
+    }
+    return n;
+}
+static void sdv__cone_set(const sdv_tree *tree, const uint32_t *nodes, lao_v4 *cone) {
+    cone[0] = tree->nodes[nodes[0]];
+    cone[1] = tree->nodes[nodes[1]];
+}
+static void sdv__cones_fill(const sdv_tree *tree, sdv_grid *g) {
+    uint32_t i, n = tree->segment_count;
+    for (i = 0; i < n; i++) {
+        g->cone_nodes[2 * (size_t)i] = tree->segments[i].parent;
+        g->cone_nodes[2 * (size_t)i + 1] = tree->segments[i].child;
+    }
+    for (i = 0; i < tree->node_count; i++) {
+        if (sdv__is_lone(tree, i)) {
+            g->cone_nodes[2 * (size_t)n] = i;
+            g->cone_nodes[2 * (size_t)n + 1] = i;
+            n++;
+        }
+    }
+    for (i = 0; i < n; i++) {
+        sdv__cone_set(tree, g->cone_nodes + 2 * (size_t)i, g->cones + 2 * (size_t)i);
+    }
+}
+
+/* ---- which cells a cone may be listed in: plane by plane, row by row. The balls of a cone have
+   centre a + t (b - a) and radius ra + t (rb - ra); those that reach a plane across an axis have t
+   in an interval. */
+typedef struct sdv__raster {
+    double a[3], b[3], ra, rb; /* radii with the reach of lists and a margin for rounding */
+} sdv__raster;
+
+static sdv__raster sdv__raster_make(const sdv_grid *g, const lao_v4 *cone) {
+    sdv__raster r;
+    const float *a = &cone[0].x, *b = &cone[1].x, *o = &g->origin.x;
+    double reach = (double)sdv_list_reach(g->cell) + 0.02 * (double)g->cell;
+    int k;
+    for (k = 0; k < 3; k++) {
+        reach += 1e-6 * (fabs((double)a[k]) + fabs((double)b[k]) + fabs((double)o[k]));
+        r.a[k] = (double)a[k];
+        r.b[k] = (double)b[k];
+    }
+    r.ra = (double)cone[0].w * (1 + 1e-6) + reach;
+    r.rb = (double)cone[1].w * (1 + 1e-6) + reach;
+    return r;
+}
+/* Narrows t to the balls that reach the plane `at` across an axis; 0: none. */
+static int sdv__raster_cut(const sdv__raster *r, int axis, double at, double t[2]) {
+    double d = r->b[axis] - r->a[axis], dr = r->rb - r->ra, from = r->a[axis] - at;
+    double slope[2], value[2];
+    int i;
+    slope[0] = d - dr; /* centre - at <= radius */
+    value[0] = r->ra - from;
+    slope[1] = -d - dr; /* at - centre <= radius */
+    value[1] = r->ra + from;
+    for (i = 0; i < 2; i++) {
+        double limit = value[i] / slope[i];
+        if (slope[i] > 0) {
+            t[1] = limit < t[1] ? limit : t[1];
+        } else if (slope[i] < 0) {
+            t[0] = limit > t[0] ? limit : t[0];
+        } else if (value[i] < 0) {
+            return 0;
+        }
+    }
+    return t[0] <= t[1];
+}
+/* Cells of an axis that the balls of t may reach: range[0] .. range[1] - 1. */
+static void sdv__raster_range(const sdv_grid *g, const sdv__raster *r, int axis, const double t[2],
+                              uint32_t range[2]) {
+    double low = 0, high = 0, origin = (double)(&g->origin.x)[axis], n = (double)g->size[axis];
+    int i;
+    for (i = 0; i < 2; i++) {
+        double c = r->a[axis] + t[i] * (r->b[axis] - r->a[axis]);
+        double radius = r->ra + t[i] * (r->rb - r->ra);
+        low = i == 0 || c - radius < low ? c - radius : low;
+        high = i == 0 || c + radius > high ? c + radius : high;
+    }
+    low = ceil((low - origin) / (double)g->cell - 0.5); /* centres within */
+    high = floor((high - origin) / (double)g->cell - 0.5) + 1;
+    range[0] = low > 0 ? (low < n ? (uint32_t)low : g->size[axis]) : 0;
+    range[1] = high > 0 ? (high < n ? (uint32_t)high : g->size[axis]) : 0;
+}
+static double sdv__plane(const sdv_grid *g, int axis, uint32_t i) {
+    return (double)(&g->origin.x)[axis] + ((double)i + 0.5) * (double)g->cell;
+}
+/* Calls visit(arg, cell, centre) for every cell of layer z that the cone may be listed in. */
+typedef void (*sdv__visitor)(void *arg, uint32_t cell, lao_v3 centre);
+static void sdv__raster_layer(const sdv_grid *g, const lao_v4 *cone, uint32_t z, sdv__visitor visit,
+                              void *arg) {
+    sdv__raster r = sdv__raster_make(g, cone);
+    sdv_box box = sdv__grid_box(g);
+    double t[2] = {0, 1};
+    uint32_t rows[2], y, x;
+    if (!sdv__raster_cut(&r, 2, sdv__plane(g, 2, z), t)) {
+        return;
+    }
+    sdv__raster_range(g, &r, 1, t, rows);
+    for (y = rows[0]; y < rows[1]; y++) {
+        double u[2];
+        uint32_t columns[2];
+        u[0] = t[0];
+        u[1] = t[1];
+        if (!sdv__raster_cut(&r, 1, sdv__plane(g, 1, y), u)) {
+            continue;
+        }
+        sdv__raster_range(g, &r, 0, u, columns);
+        for (x = columns[0]; x < columns[1]; x++) {
+            visit(arg, (uint32_t)sdv__row(g, y, z) + x, sdv_cell_centre(box, x, y, z));
+        }
+    }
+}
+static void sdv__raster_layers(const sdv_grid *g, const lao_v4 *cone, uint32_t range[2]) {
+    sdv__raster r = sdv__raster_make(g, cone);
+    const double t[2] = {0, 1};
+    sdv__raster_range(g, &r, 2, t, range);
+}
+static int sdv__is_listed(const sdv_grid *g, lao_v3 centre, const lao_v4 *cone) {
+    return sdv_round_cone(centre, cone[0], cone[1]) <= sdv_list_reach(g->cell);
+}
+
+/* ---- lists: counted, then filled, layer by layer; cones come in ascending order */
+typedef struct sdv__fill {
+    sdv_grid *grid;
+    const uint32_t *first, *binned; /* cones of each layer, ascending */
+    uint64_t *layer_ids;            /* entries of each layer; later where they begin */
+    uint32_t cone;
+} sdv__fill;
+
+static void sdv__count_cell(void *arg, uint32_t cell, lao_v3 centre) {
+    sdv__fill *f = (sdv__fill *)arg;
+    sdv_grid *g = f->grid;
+    if (sdv__is_listed(g, centre, g->cones + 2 * (size_t)f->cone)) {
+        g->cells[cell].w += 1.0f;
+    }
+}
+static void sdv__fill_cell(void *arg, uint32_t cell, lao_v3 centre) {
+    sdv__fill *f = (sdv__fill *)arg;
+    sdv_grid *g = f->grid;
+    if (sdv__is_listed(g, centre, g->cones + 2 * (size_t)f->cone)) {
+        lao_v4 *c = g->cells + cell;
+        g->ids[(size_t)c->z + (size_t)c->x] = (float)f->cone;
+        c->x += 1.0f;
+    }
+}
+static void sdv__raster_binned(const sdv__fill *f, uint32_t z, sdv__visitor visit) {
+    sdv__fill own = *f;
+    uint32_t i;
+    for (i = f->first[z]; i < f->first[z + 1]; i++) {
+        own.cone = f->binned[i];
+        sdv__raster_layer(own.grid, own.grid->cones + 2 * (size_t)own.cone, z, visit, &own);
+    }
+}
+static void sdv__count_layer(void *arg, uint32_t z) {
+    sdv__fill *f = (sdv__fill *)arg;
+    lao_v4 *cells = f->grid->cells + sdv__row(f->grid, 0, z);
+    size_t i, n = sdv__layer_size(f->grid);
+    uint64_t sum = 0;
+    memset(cells, 0, n * sizeof *cells);
+    sdv__raster_binned(f, z, sdv__count_cell);
+    for (i = 0; i < n; i++) {
+        sum += (uint32_t)cells[i].w;
+    }
+    f->layer_ids[z] = sum;
+}
+
+/* ---- nearest occupied cells: exact, separable, ties to the lowest index (METHODS 5.2) */
+/* Lower envelope of parabolas apart[u] + (x - u)^2 in integers (Meijster 2000): ties to the lower
+   u. apart < 0: no parabola. */
+typedef struct sdv__envelope {
+    int32_t place[SDV__AXIS], until[SDV__AXIS]; /* winners and the last x where they win */
+    int32_t count;
+} sdv__envelope;
+static void sdv__envelope_make(sdv__envelope *e, const int32_t *apart, int32_t n) {
+    int32_t u;
+    e->count = 0;
+    for (u = 0; u < n; u++) {
+        int32_t until = -1;
+        if (apart[u] < 0) {
+            continue;
+        }
+        while (e->count > 0) { /* up to where does the last winner win against u? */
+            int32_t i = e->place[e->count - 1];
+            int32_t start = e->count > 1 ? e->until[e->count - 2] + 1 : 0;
+            int32_t top = u * u - i * i + apart[u] - apart[i], bottom = 2 * (u - i);
+            until = top >= 0 ? top / bottom : -((-top + bottom - 1) / bottom);
+            if (until >= start) {
+                break;
+            }
+            e->count--;
+        }
+        if (e->count > 0 && until >= n - 1) {
+            continue;
+        }
+        if (e->count > 0) {
+            e->until[e->count - 1] = until;
+        }
+        e->place[e->count] = u;
+        e->until[e->count++] = n - 1;
+    }
+}
+
+/* The nearest occupied x of each row of a layer; SDV_NONE: none. */
+static void sdv__layer_rows(const sdv_grid *g, uint32_t z, uint32_t *out) {
+    uint32_t x, y, nx = g->size[0];
+    for (y = 0; y < g->size[1]; y++) {
+        const lao_v4 *cells = g->cells + sdv__row(g, y, z);
+        uint32_t *row = out + (size_t)nx * y, last = SDV_NONE;
+        for (x = 0; x < nx; x++) {
+            last = cells[x].w > 0.0f ? x : last;
+            row[x] = last;
+        }
+        last = SDV_NONE;
+        for (x = nx; x-- > 0;) { /* the one behind wins only when it is nearer */
+            last = cells[x].w > 0.0f ? x : last;
+            if (last != SDV_NONE && (row[x] == SDV_NONE || last - x < x - row[x])) {
+                row[x] = last;
+            }
+        }
+    }
+}
+/* From there x + 65536 y of the nearest occupied cell of the layer. */
+static void sdv__layer_columns(const sdv_grid *g, uint32_t *out) {
+    uint32_t x, y, nx = g->size[0], ny = g->size[1];
+    for (x = 0; x < nx; x++) {
+        int32_t apart[SDV__AXIS], k = 0;
+        uint32_t best[SDV__AXIS];
+        sdv__envelope e;
+        for (y = 0; y < ny; y++) {
+            int32_t d = (int32_t)out[(size_t)nx * y + x] - (int32_t)x;
+            best[y] = out[(size_t)nx * y + x];
+            apart[y] = best[y] == SDV_NONE ? -1 : d * d;
+        }
+        sdv__envelope_make(&e, apart, (int32_t)ny);
+        for (y = 0; y < ny && e.count > 0; y++) {
+            k += (int32_t)y > e.until[k];
+            out[(size_t)nx * y + x] = best[e.place[k]] + 65536 * (uint32_t)e.place[k];
+        }
+    }
+}
+static void sdv__fill_layer(void *arg, uint32_t z) {
+    sdv__fill *f = (sdv__fill *)arg;
+    sdv_grid *g = f->grid;
+    size_t i, first = sdv__row(g, 0, z), n = sdv__layer_size(g);
+    uint64_t at = f->layer_ids[z];
+    for (i = first; i < first + n; i++) {
+        g->cells[i].z = (float)at;
+        at += (uint32_t)g->cells[i].w;
+    }
+    sdv__raster_binned(f, z, sdv__fill_cell);
+    sdv__layer_rows(g, z, g->layer + first);
+    sdv__layer_columns(g, g->layer + first);
+}
+
+/* The nearest occupied cell of a cell, `apart2` cells squared away. `stale` (Optional): gets bit 2
+   where that is news. */
+static void sdv__nearest_write(sdv_grid *g, size_t cell, size_t nearest, int32_t apart2,
+                               unsigned char *stale) {
+    lao_v4 *c = g->cells + cell;
+    if (stale) {
+        if (c->y == (float)nearest) {
+            return;
+        }
+        stale[cell] |= 2;
+    }
+    c->y = (float)nearest;
+    if (!(c->w > 0.0f)) {
+        c->z = sdv_far_step(lao_sqrt((float)apart2) * g->cell, g->cell);
+    }
+}
+/* Columns along z at one y, 16 at a time: the nearest of all layers' nearest. `wanted` (Optional):
+   the x that need it. */
+enum { SDV__WIDE = 16 };
+static void sdv__column(sdv_grid *g, uint32_t x, uint32_t y, const uint32_t *best,
+                        unsigned char *stale) {
+    int32_t apart[SDV__AXIS], k = 0;
+    sdv__envelope e;
+    uint32_t z, nz = g->size[2];
+    for (z = 0; z < nz; z++) {
+        uint32_t cell = best[z * SDV__WIDE];
+        int32_t dx = (int32_t)(cell & 65535u) - (int32_t)x;
+        int32_t dy = (int32_t)(cell >> 16) - (int32_t)y;
+        apart[z] = cell == SDV_NONE ? -1 : dx * dx + dy * dy;
+    }
+    sdv__envelope_make(&e, apart, (int32_t)nz);
+    for (z = 0; z < nz && e.count > 0; z++) {
+        int32_t winner, dz;
+        uint32_t cell;
+        k += (int32_t)z > e.until[k];
+        winner = e.place[k];
+        dz = winner - (int32_t)z;
+        cell = best[winner * SDV__WIDE];
+        sdv__nearest_write(g, sdv__row(g, y, z) + x,
+                           sdv__row(g, cell >> 16, (uint32_t)winner) + (cell & 65535u),
+                           apart[winner] + dz * dz, stale);
+    }
+}
+static void sdv__columns(sdv_grid *g, uint32_t y, const unsigned char *wanted,
+                         unsigned char *stale) {
+    uint32_t best[SDV__AXIS * SDV__WIDE], x0, x, z, nx = g->size[0];
+    for (x0 = 0; x0 < nx; x0 += SDV__WIDE) {
+        uint32_t wide = nx - x0 < SDV__WIDE ? nx - x0 : (uint32_t)SDV__WIDE;
+        if (wanted && !memchr(wanted + x0, 1, wide)) {
+            continue;
+        }
+        for (z = 0; z < g->size[2]; z++) {
+            memcpy(best + z * SDV__WIDE, g->layer + sdv__row(g, y, z) + x0, wide * sizeof *best);
+        }
+        for (x = x0; x < x0 + wide; x++) {
+            if (!wanted || wanted[x]) {
+                sdv__column(g, x, y, best + (x - x0), stale);
+            }
+        }
+    }
+}
+static void sdv__column_slab(void *arg, uint32_t y) {
+    sdv__columns(((sdv__fill *)arg)->grid, y, NULL, NULL);
+}
+
+/* ---- distances */
+/* Of p to the cones of a cell's list. */
+static float sdv__list_distance(const sdv_grid *g, const lao_v4 *cell, lao_v3 p, uint32_t *cone) {
+    const float *ids = g->ids + (size_t)cell->z;
+    uint32_t i, n = (uint32_t)cell->w;
+    float least = SDV_FAR;
+    for (i = 0; i < n; i++) {
+        const lao_v4 *c = g->cones + 2 * (size_t)ids[i];
+        float d = sdv_round_cone(p, c[0], c[1]);
+        if (d < least) {
+            least = d;
+            *cone = (uint32_t)ids[i];
+        }
+    }
+    return least;
+}
+/* Of the cells' centres to the list of their nearest occupied cell. `stale` (Optional): which cells
+   need it: those with bit 2, and those nearest to one with bit 1. */
+static void sdv__refine_layer(const sdv_grid *g, uint32_t z, const unsigned char *stale) {
+    sdv_box box = sdv__grid_box(g);
+    uint32_t x, y, cone;
+    for (y = 0; y < g->size[1]; y++) {
+        size_t row = sdv__row(g, y, z);
+        for (x = 0; x < g->size[0]; x++) {
+            lao_v4 *c = g->cells + row + x;
+            size_t nearest = (size_t)c->y;
+            if (!stale || (stale[row + x] & 2) || (stale[nearest] & 1)) {
+                c->x =
+                    sdv__list_distance(g, g->cells + nearest, sdv_cell_centre(box, x, y, z), &cone);
+            }
+        }
+    }
+}
+static void sdv__refine_slab(void *arg, uint32_t z) {
+    sdv__refine_layer(((sdv__fill *)arg)->grid, z, NULL);
+}
+
+/* ---- building */
+/* Cones of each layer, ascending. NULL: no memory. `first` has size[2] + 1 entries. */
+static uint32_t *sdv__bin_cones(const sdv_grid *g, uint32_t *first) {
+    uint32_t i, z, range[2], *binned;
+    uint64_t sum = 0;
+    memset(first, 0, (g->size[2] + 1) * sizeof *first);
+    for (i = 0; i < g->cone_count; i++) {
+        sdv__raster_layers(g, g->cones + 2 * (size_t)i, range);
+        for (z = range[0]; z < range[1]; z++) {
+            first[z]++;
+        }
+    }
+    for (z = 0; z <= g->size[2]; z++) {
+        uint32_t n = first[z];
+        first[z] = (uint32_t)sum;
+        sum += n;
+    }
+    binned = sum < SDV_NONE ? (uint32_t *)sdv__take(&g->allocator, sum, sizeof *binned) : NULL;
+    for (i = 0; binned && i < g->cone_count; i++) {
+        sdv__raster_layers(g, g->cones + 2 * (size_t)i, range);
+        for (z = range[0]; z < range[1]; z++) { /* first = the next free place, */
+            binned[first[z]++] = i;
+        }
+    }
+    for (z = g->size[2]; binned && z > 0; z--) { /* and back */
+        first[z] = first[z - 1];
+    }
+    first[0] = 0;
+    return binned;
+}
+
+/* Entries of the layers to where they begin; returns the sum. */
+static uint64_t sdv__layer_starts(const sdv_grid *g, uint64_t *layer_ids) {
+    uint64_t sum = 0;
+    uint32_t z;
+    for (z = 0; z < g->size[2]; z++) {
+        uint64_t n = layer_ids[z];
+        layer_ids[z] = sum;
+        sum += n;
+    }
+    return sum;
+}
+
+/* Fills the cells of a grid whose box, cones and memory are there. */
+static lao_result sdv__grid_fill(sdv__work *work, sdv_grid *g, uint32_t *first,
+                                 uint64_t *layer_ids) {
+    const sdv_host *host = work->host;
+    uint32_t *binned = sdv__bin_cones(g, first);
+    uint64_t sum = 0;
+    int cancelled;
+    sdv__fill f;
+    if (!binned) {
+        return sdv__fail(host, SDV_LOG_MEMORY, "the cones of a grid's layers");
+    }
+    f.grid = g;
+    f.first = first;
+    f.binned = binned;
+    f.layer_ids = layer_ids;
+    f.cone = 0;
+    cancelled = sdv__run(work, g->size[2], sdv__count_layer, &f);
+    if (!cancelled) {
+        sum = sdv__layer_starts(g, layer_ids);
+        g->id_count = (uint32_t)sum;
+        g->ids = sum <= SDV__EXACT ? (float *)sdv__take(&g->allocator, sum, sizeof *g->ids) : NULL;
+    }
+    if (g->ids) {
+        cancelled = sdv__run(work, g->size[2], sdv__fill_layer, &f) ||
+                    sdv__run(work, g->size[1], sdv__column_slab, &f) ||
+                    sdv__run(work, g->size[2], sdv__refine_slab, &f);
+    }
+    sdv__give(&g->allocator, binned);
+    if (cancelled) {
+        return sdv__fail(host, SDV_LOG_CANCELLED, "building a grid");
+    }
+    if (sum > SDV__EXACT) {
+        return sdv__fail(host, SDV_LOG_GRID_LISTS, "%llu entries", (unsigned long long)sum);
+    }
+    return g->ids ? LAO_OK
+                  : sdv__fail(host, SDV_LOG_MEMORY, "a grid's %u list entries", g->id_count);
+}
+
+SDV_API lao_result sdv_grid_build(const sdv_host *host, const sdv_tree *tree,
+                                  const sdv_grid_desc *desc, sdv_grid *grid) {
+    sdv_grid_desc standard;
+    sdv_grid g;
+    sdv__work work;
+    uint32_t *first;
+    uint64_t *layer_ids;
+    lao_result result;
+    memset(&standard, 0, sizeof standard);
+    memset(&g, 0, sizeof g);
+    if (!tree || !grid || !tree->memory) {
+        return sdv__fail(host, SDV_LOG_NULL_ARGUMENT, "sdv_grid_build");
+    }
+    g.cone_count = tree->segment_count + sdv__lone_count(tree);
+    if (g.cone_count > SDV__EXACT) {
+        return sdv__fail(host, SDV_LOG_GRID_LISTS, "%u segments", g.cone_count);
+    }
+    if (!sdv__grid_frame(tree, desc ? desc : &standard, &g)) {
+        return sdv__fail(host, SDV_LOG_GRID_CELLS, "%u x %u x %u", g.size[0], g.size[1], g.size[2]);
+    }
+    g.allocator = sdv__allocator(host);
+    g.cells = (lao_v4 *)sdv__take(&g.allocator, g.cell_count, sizeof *g.cells);
+    g.layer = (uint32_t *)sdv__take(&g.allocator, g.cell_count, sizeof *g.layer);
+    g.cones = (lao_v4 *)sdv__take(&g.allocator, 2 * (uint64_t)g.cone_count, sizeof *g.cones);
+    g.cone_nodes =
+        (uint32_t *)sdv__take(&g.allocator, 2 * (uint64_t)g.cone_count, sizeof *g.cone_nodes);
+    first = (uint32_t *)sdv__take(&g.allocator, SDV__AXIS + 1, sizeof *first);
+    layer_ids = (uint64_t *)sdv__take(&g.allocator, SDV__AXIS, sizeof *layer_ids);
+    if (g.cells && g.layer && g.cones && g.cone_nodes && first && layer_ids) {
+        work.host = host;
+        work.done = 0;
+        work.total = 3 * (uint64_t)g.size[2] + g.size[1];
+        sdv__cones_fill(tree, &g);
+        result = sdv__grid_fill(&work, &g, first, layer_ids);
+    } else {
+        result = sdv__fail(host, SDV_LOG_MEMORY, "a grid of %u cells and %u cones", g.cell_count,
+                           g.cone_count);
+    }
+    sdv__give(&g.allocator, first);
+    sdv__give(&g.allocator, layer_ids);
+    if (result != LAO_OK) {
+        sdv_grid_free(&g);
+        return result;
+    }
+    *grid = g;
+    return LAO_OK;
+}
+
+SDV_API void sdv_grid_free(sdv_grid *grid) {
+    if (grid && grid->allocator.release) {
+        sdv__give(&grid->allocator, grid->cells);
+        sdv__give(&grid->allocator, grid->layer);
+        sdv__give(&grid->allocator, grid->ids);
+        sdv__give(&grid->allocator, grid->cones);
+        sdv__give(&grid->allocator, grid->cone_nodes);
+        memset(grid, 0, sizeof *grid);
+    }
+}
+
+/* ---- changing */
+/* Cells whose list may change are marked, then all lists are copied into a new array with the
+   changed ones merged in; what is nearest is found anew in the layers whose occupied cells changed,
+   and in the columns along z where that changed anything. */
+typedef struct sdv__change {
+    sdv_grid *grid;
+    uint32_t *changed; /* cones, ascending */
+    lao_v4 *cones;     /* their new ends, 2 each */
+    uint32_t changed_count;
+    unsigned char *stale;              /* per cell: 1: its list may change, 2: another is nearest */
+    unsigned char touched[SDV__AXIS];  /* per layer: it has cells with bit 1 */
+    unsigned char turned[SDV__AXIS];   /* per layer: its occupied cells changed */
+    uint32_t scratch_layer[SDV__AXIS]; /* per layer: place in scratch */
+    uint64_t layer_ids[SDV__AXIS];
+    uint32_t *scratch; /* new `layer` values of touched layers */
+    float *ids;
+} sdv__change;
+
+static void sdv__mark_cell(void *arg, uint32_t cell, lao_v3 centre) {
+    (void)centre;
+    ((unsigned char *)arg)[cell] = 1;
+}
+/* The new list of a marked cell: the old one without changed cones, and the changed ones that are
+   near enough, in order. Returns its length; `out` NULL: only that. */
+static uint32_t sdv__merge_list(const sdv__change *c, const lao_v4 *cell, lao_v3 centre,
+                                float *out) {
+    const sdv_grid *g = c->grid;
+    uint32_t i = 0, k = 0, n = 0, old_count = (uint32_t)cell->w;
+    const float *old = old_count ? g->ids + (size_t)cell->z : NULL;
+    while (i < old_count || k < c->changed_count) {
+        uint32_t a = i < old_count ? (uint32_t)old[i] : SDV_NONE;
+        uint32_t b = k < c->changed_count ? c->changed[k] : SDV_NONE;
+        if (b > a || sdv__is_listed(g, centre, c->cones + 2 * (size_t)k)) {
+            if (out) {
+                out[n] = (float)(b > a ? a : b);
+            }
+            n++;
+        }
+        i += a <= b;
+        k += b <= a;
+    }
+    return n;
+}
+static void sdv__mark_layer(void *arg, uint32_t z) {
+    sdv__change *c = (sdv__change *)arg;
+    const sdv_grid *g = c->grid;
+    sdv_box box = sdv__grid_box(g);
+    size_t n = sdv__layer_size(g), first = sdv__row(g, 0, z), i;
+    uint64_t sum = 0;
+    uint32_t k;
+    memset(c->stale + first, 0, n);
+    for (k = 0; k < c->changed_count; k++) {
+        sdv__raster_layer(g, g->cones + 2 * (size_t)c->changed[k], z, sdv__mark_cell, c->stale);
+        sdv__raster_layer(g, c->cones + 2 * (size_t)k, z, sdv__mark_cell, c->stale);
+    }
+    c->touched[z] = memchr(c->stale + first, 1, n) != NULL;
+    for (i = 0; i < n; i++) {
+        const lao_v4 *cell = g->cells + first + i;
+        if (c->stale[first + i]) {
+            uint32_t x = (uint32_t)(i % g->size[0]), y = (uint32_t)(i / g->size[0]);
+            sum += sdv__merge_list(c, cell, sdv_cell_centre(box, x, y, z), NULL);
+        } else {
+            sum += (uint32_t)cell->w;
+        }
+    }
+    c->layer_ids[z] = sum;
+}
+static void sdv__relist_layer(void *arg, uint32_t z) {
+    sdv__change *c = (sdv__change *)arg;
+    sdv_grid *g = c->grid;
+    sdv_box box = sdv__grid_box(g);
+    size_t n = sdv__layer_size(g), first = sdv__row(g, 0, z), at = (size_t)c->layer_ids[z], i;
+    for (i = 0; i < n; i++) {
+        lao_v4 *cell = g->cells + first + i;
+        uint32_t count = (uint32_t)cell->w;
+        if (c->stale[first + i]) {
+            uint32_t x = (uint32_t)(i % g->size[0]), y = (uint32_t)(i / g->size[0]);
+            count = sdv__merge_list(c, cell, sdv_cell_centre(box, x, y, z), c->ids + at);
+            c->turned[z] |= (count > 0) != (cell->w > 0.0f);
+            cell->w = (float)count;
+        } else if (count > 0) {
+            memcpy(c->ids + at, g->ids + (size_t)cell->z, count * sizeof *c->ids);
+        }
+        if (count > 0) {
+            cell->z = (float)at;
+        }
+        at += count;
+    }
+}
+static void sdv__renear_layer(void *arg, uint32_t z) {
+    sdv__change *c = (sdv__change *)arg;
+    if (c->turned[z]) {
+        uint32_t *out = c->scratch + sdv__layer_size(c->grid) * c->scratch_layer[z];
+        sdv__layer_rows(c->grid, z, out);
+        sdv__layer_columns(c->grid, out);
+    }
+}
+static void sdv__renear_slab(void *arg, uint32_t y) {
+    sdv__change *c = (sdv__change *)arg;
+    sdv_grid *g = c->grid;
+    unsigned char wanted[SDV__AXIS];
+    uint32_t x, z;
+    memset(wanted, 0, sizeof wanted);
+    for (z = 0; z < g->size[2]; z++) {
+        uint32_t *row = g->layer + sdv__row(g, y, z);
+        const uint32_t *fresh = c->scratch + sdv__layer_size(g) * c->scratch_layer[z];
+        for (x = 0; c->turned[z] && x < g->size[0]; x++) {
+            uint32_t value = fresh[(size_t)g->size[0] * y + x];
+            wanted[x] |= row[x] != value;
+            row[x] = value;
+        }
+    }
+    sdv__columns(g, y, wanted, c->stale);
+}
+static void sdv__rerefine_layer(void *arg, uint32_t z) {
+    const sdv__change *c = (const sdv__change *)arg;
+    sdv__refine_layer(c->grid, z, c->stale);
+}
+
+/* The cones at the nodes, with their new ends. 0: no memory. */
+static int sdv__changed_cones(const sdv_tree *tree, const uint32_t *nodes, uint32_t count,
+                              sdv__change *c) {
+    const sdv_grid *g = c->grid;
+    const lao_allocator *a = &g->allocator;
+    unsigned char *moved = (unsigned char *)sdv__take(a, tree->node_count, 1);
+    uint32_t i, n = 0;
+    if (!moved) {
+        return 0;
+    }
+    memset(moved, 0, tree->node_count);
+    for (i = 0; i < count; i++) {
+        moved[nodes[i]] = 1;
+    }
+    for (i = 0; i < g->cone_count; i++) {
+        const uint32_t *ends = g->cone_nodes + 2 * (size_t)i;
+        c->changed_count += moved[ends[0]] || moved[ends[1]];
+    }
+    c->changed = (uint32_t *)sdv__take(a, c->changed_count, sizeof *c->changed);
+    c->cones = (lao_v4 *)sdv__take(a, 2 * (uint64_t)c->changed_count, sizeof *c->cones);
+    for (i = 0; c->changed && c->cones && i < g->cone_count; i++) {
+        const uint32_t *ends = g->cone_nodes + 2 * (size_t)i;
+        if (moved[ends[0]] || moved[ends[1]]) {
+            c->changed[n] = i;
+            sdv__cone_set(tree, ends, c->cones + 2 * (size_t)n++);
+        }
+    }
+    sdv__give(a, moved);
+    return c->changed && c->cones;
+}
+
+/* Everything up to the point where nothing can fail any more. */
+static lao_result sdv__change_prepare(sdv__work *work, sdv__change *c, uint64_t *sum) {
+    sdv_grid *g = c->grid;
+    const lao_allocator *a = &g->allocator;
+    uint32_t z, layers = 0;
+    c->stale = (unsigned char *)sdv__take(a, g->cell_count, 1);
+    if (!c->stale) {
+        return sdv__fail(work->host, SDV_LOG_MEMORY, "changing a grid");
+    }
+    if (sdv__run(work, g->size[2], sdv__mark_layer, c)) {
+        return sdv__fail(work->host, SDV_LOG_CANCELLED, "changing a grid");
+    }
+    *sum = sdv__layer_starts(g, c->layer_ids);
+    for (z = 0; z < g->size[2]; z++) {
+        c->scratch_layer[z] = layers;
+        layers += c->touched[z];
+    }
+    if (*sum > SDV__EXACT) {
+        return sdv__fail(work->host, SDV_LOG_GRID_LISTS, "%llu entries", (unsigned long long)*sum);
+    }
+    c->ids = (float *)sdv__take(a, *sum, sizeof *c->ids);
+    c->scratch = (uint32_t *)sdv__take(a, layers * (uint64_t)sdv__layer_size(g), sizeof(uint32_t));
+    return c->ids && c->scratch ? LAO_OK : sdv__fail(work->host, SDV_LOG_MEMORY, "changing a grid");
+}
+static void sdv__change_apply(sdv__work *work, sdv__change *c) {
+    sdv_grid *g = c->grid;
+    float *old = g->ids;
+    uint32_t k;
+    (void)sdv__run(work, g->size[2], sdv__relist_layer, c);
+    g->ids = c->ids;
+    c->ids = old;
+    for (k = 0; k < c->changed_count; k++) {
+        memcpy(g->cones + 2 * (size_t)c->changed[k], c->cones + 2 * (size_t)k,
+               2 * sizeof *g->cones);
+    }
+    (void)sdv__run(work, g->size[2], sdv__renear_layer, c);
+    (void)sdv__run(work, g->size[1], sdv__renear_slab, c);
+    (void)sdv__run(work, g->size[2], sdv__rerefine_layer, c);
+}
+static lao_result sdv__grid_change(const sdv_host *host, const sdv_tree *tree,
+                                   const uint32_t *nodes, uint32_t count, sdv_grid *grid) {
+    sdv__change c;
+    sdv__work work;
+    sdv_host silent;
+    uint64_t sum = 0;
+    lao_result result = LAO_ERROR_OUT_OF_MEMORY;
+    memset(&c, 0, sizeof c);
+    c.grid = grid;
+    work.host = host;
+    work.done = 0;
+    work.total = 4 * (uint64_t)grid->size[2] + grid->size[1];
+    if (sdv__changed_cones(tree, nodes, count, &c)) {
+        result = sdv__change_prepare(&work, &c, &sum);
+    } else {
+        sdv__fail(host, SDV_LOG_MEMORY, "changing a grid");
+    }
+    if (result == LAO_OK) {
+        if (host) { /* no way back from here: the host is no longer asked whether to cancel */
+            silent = *host;
+            silent.job.progress = NULL;
+            work.host = &silent;
+        }
+        sdv__change_apply(&work, &c);
+        grid->id_count = (uint32_t)sum;
+        grid->rebuilt = 0;
+    }
+    sdv__give(&grid->allocator, c.changed);
+    sdv__give(&grid->allocator, c.cones);
+    sdv__give(&grid->allocator, c.stale);
+    sdv__give(&grid->allocator, c.scratch);
+    sdv__give(&grid->allocator, c.ids);
+    return result;
+}
+
+/* A new grid in place of the old one, with as many cells along its longest axis. */
+static lao_result sdv__grid_renew(const sdv_host *host, const sdv_tree *tree, sdv_grid *grid) {
+    sdv_grid_desc desc;
+    sdv_grid fresh;
+    lao_result result;
+    uint32_t k;
+    memset(&desc, 0, sizeof desc);
+    desc.resolution = 16;
+    for (k = 0; k < 3; k++) {
+        desc.resolution = grid->size[k] > desc.resolution ? grid->size[k] : desc.resolution;
+    }
+    result = sdv_grid_build(host, tree, &desc, &fresh);
+    if (result == LAO_OK) {
+        sdv_grid_free(grid);
+        *grid = fresh;
+        grid->rebuilt = 1;
+    }
+    return result;
+}
+
+SDV_API lao_result sdv_grid_update(const sdv_host *host, const sdv_tree *tree,
+                                   const uint32_t *nodes, uint32_t count, sdv_grid *grid) {
+    uint32_t i;
+    if (!tree || !grid || (count && !nodes) || !tree->memory || !grid->cells) {
+        return sdv__fail(host, SDV_LOG_NULL_ARGUMENT, "sdv_grid_update");
+    }
+    for (i = 0; i < count; i++) {
+        if (nodes[i] >= tree->node_count) {
+            return sdv__fail(host, SDV_LOG_GRID_TREE, "node %u of %u", nodes[i], tree->node_count);
+        }
+    }
+    if (grid->cone_count != tree->segment_count + sdv__lone_count(tree)) {
+        return sdv__fail(host, SDV_LOG_GRID_TREE, NULL);
+    }
+    if (!sdv__grid_holds(grid, tree)) {
+        return sdv__grid_renew(host, tree, grid);
+    }
+    return sdv__grid_change(host, tree, nodes, count, grid);
+}
+
+/* ---- reading */
+SDV_API float sdv_grid_distance(const sdv_grid *grid, lao_v3 p, uint32_t *cone) {
+    const lao_v4 *cell = grid->cells + sdv_cell_at(sdv__grid_box(grid), p);
+    uint32_t nearest = SDV_NONE;
+    float d;
+    cell = cell->w > 0.0f ? cell : grid->cells + (size_t)cell->y;
+    d = sdv__list_distance(grid, cell, p, &nearest);
+    if (cone) {
+        *cone = nearest;
+    }
+    return d;
+}
+SDV_API float sdv_cones_distance(const lao_v4 *cones, uint32_t count, lao_v3 p, uint32_t *cone) {
+    uint32_t i, nearest = SDV_NONE;
+    float least = SDV_FAR;
+    for (i = 0; i < count; i++) {
+        float d = sdv_round_cone(p, cones[2 * (size_t)i], cones[2 * (size_t)i + 1]);
+        if (d < least) {
+            least = d;
+            nearest = i;
+        }
+    }
+    if (cone) {
+        *cone = nearest;
+    }
+    return least;
+}
+
+/* ================================================================================================
+ * tracing: what the shaders do, with the same shared functions */
+
+/* One sample: from the list of the cell at p, or of the nearest cell that has one. */
+static sdv_near sdv__near_at(const sdv_grid *g, const lao_v4 *cell, lao_v3 p, lao_v3 direction) {
+    sdv_near n = sdv_near_start(sdv_near_reach(g->cell));
+    const lao_v4 *from = cell->w > 0.0f ? cell : g->cells + (size_t)cell->y;
+    uint32_t i;
+    for (i = 0; i < (uint32_t)from->w; i++) {
+        float id = g->ids[(size_t)from->z + i];
+        const lao_v4 *cone = g->cones + 2 * (size_t)id;
+        n = sdv_near_add(n, p, direction, cone[0], cone[1], id);
+    }
+    return n;
+}
+static const lao_v4 *sdv__cell_at(const sdv_grid *g, lao_v3 p) {
+    return g->cells + sdv_cell_at(sdv__grid_box(g), p);
+}
+
+/* Refines a local minimum whose sample was nearest to m.cone, with the cones that turn out to be
+   nearest where the ray is nearest to those before. */
+static sdv_march sdv__minimum(const sdv_grid *g, const sdv_ray *ray, sdv_march m, float cone,
+                              float low, float high) {
+    sdv_minimum found = sdv_minimum_start(cone);
+    int i;
+    for (i = 0; i < SDV_MINIMUM_ROUNDS && found.cone >= 0.0f; i++) {
+        const lao_v4 *ends = g->cones + 2 * (size_t)found.cone;
+        lao_v3 p;
+        found = sdv_minimum_add(found, ray->origin, ray->direction, ends[0], ends[1], low, high);
+        p = lao_v3_along(ray->origin, ray->direction, found.t);
+        found = sdv_minimum_next(found, sdv__near_at(g, sdv__cell_at(g, p), p, ray->direction));
+    }
+    return sdv_march_minimum(m, found);
+}
+
+/* On to the surface from a point close to it. */
+static void sdv__land(const sdv_grid *g, const sdv_ray *ray, const sdv_march *m, sdv_hit *hit) {
+    lao_v3 gradient = lao_v3_make(0.0f, 0.0f, 1.0f);
+    float t = m->t;
+    int i;
+    for (i = 0; i <= SDV_POLISH_ROUNDS; i++) {
+        const lao_v4 *ends;
+        sdv_near n;
+        hit->position = lao_v3_along(ray->origin, ray->direction, t);
+        n = sdv__near_at(g, sdv__cell_at(g, hit->position), hit->position, ray->direction);
+        ends = g->cones + 2 * (size_t)n.cone;
+        gradient = sdv_round_cone_gradient(hit->position, ends[0], ends[1]);
+        hit->cone = (uint32_t)n.cone;
+        hit->t = t;
+        t = sdv_polish(t, n.distance, gradient, ray->direction, g->cell);
+    }
+    hit->normal = m->inside > 0.5f ? lao_v3_scale(gradient, -1.0f) : gradient;
+    hit->inside = m->inside > 0.5f;
+}
+
+SDV_API void sdv_trace(const sdv_grid *grid, const sdv_ray *ray, sdv_hit *hit) {
+    sdv_box box = sdv__grid_box(grid);
+    lao_v2 span = sdv_ray_box(ray->origin, ray->direction, box);
+    sdv_march m = sdv_march_start(span);
+    int nearest = (ray->flags & SDV_TRACE_NEAREST) != 0, i;
+    for (i = 0; i < SDV_MAX_STEPS && m.state == SDV_MARCH_GOES; i++) {
+        lao_v3 p = lao_v3_along(ray->origin, ray->direction, m.t);
+        const lao_v4 *cell = sdv__cell_at(grid, p);
+        bool occupied = cell->w > 0.0f;
+        sdv_near n = sdv_near_start(0.0f);
+        if (occupied || nearest) {
+            n = sdv__near_at(grid, cell, p, ray->direction);
+        }
+        if (nearest && sdv_march_passed(m, n)) {
+            m = sdv__minimum(grid, ray, m, m.cone, m.older, m.t);
+        }
+        m = sdv_march_step(m, n, occupied, cell->z, grid->cell);
+    }
+    if (nearest && m.state != SDV_MARCH_HITS && m.falling > 0.5f && m.inside < 0.5f) {
+        if (m.steps < 0.5f) { /* past the box: from where the ray is nearest to its middle */
+            lao_v3 p = lao_v3_along(ray->origin, ray->direction,
+                                    sdv_ray_middle(ray->origin, ray->direction, box));
+            m.cone = sdv__near_at(grid, sdv__cell_at(grid, p), p, ray->direction).cone;
+        }
+        m = sdv__minimum(grid, ray, m, m.cone, m.older, SDV_FAR);
+    }
+    memset(hit, 0, sizeof *hit);
+    hit->cone = SDV_NONE;
+    hit->steps = (uint32_t)m.steps;
+    hit->d_min = m.d_min;
+    hit->t_min = m.t_min;
+    if (m.state == SDV_MARCH_HITS) {
+        sdv__land(grid, ray, &m, hit);
+    }
 }
 
 #ifdef __cplusplus
