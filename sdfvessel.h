@@ -348,9 +348,10 @@ typedef struct sdv_hit {
     lao_v3 position; /* mm */
     lao_v3 normal;   /* unit, towards the viewer: the field's gradient, turned round when the ray
                         starts inside a vessel */
-    float d_min; /* mm; no hit: least distance of the ray to the tree; hit: least local minimum on
-                    the way (a near miss); SDV_FAR: none */
-    float t_min; /* where that is */
+    float d_min;     /* mm; hit: the least local minimum on the way (a near miss), SDV_FAR: none; no
+                        hit: the least distance of the ray to the tree, exact up to 2 cells, beyond
+                        rarely up to a third too great */
+    float t_min;     /* where that is */
     uint32_t inside; /* non-zero: the ray starts inside a vessel and hits its wall from within */
     uint32_t steps;
 } sdv_hit;
@@ -516,9 +517,9 @@ LAO_FN lao_int sdv_cell_at(sdv_box box, lao_v3 p) {
     LAO_EXACT float x = lao_floor((p.x - box.origin.x) / box.cell);
     LAO_EXACT float y = lao_floor((p.y - box.origin.y) / box.cell);
     LAO_EXACT float z = lao_floor((p.z - box.origin.z) / box.cell);
-    lao_int ix = LAO_I(lao_min(lao_max(x, 0.0f), box.size.x - 1.0f));
-    lao_int iy = LAO_I(lao_min(lao_max(y, 0.0f), box.size.y - 1.0f));
-    lao_int iz = LAO_I(lao_min(lao_max(z, 0.0f), box.size.z - 1.0f));
+    lao_int ix = LAO_I(lao_min(lao_max(0.0f, x), box.size.x - 1.0f));
+    lao_int iy = LAO_I(lao_min(lao_max(0.0f, y), box.size.y - 1.0f));
+    lao_int iz = LAO_I(lao_min(lao_max(0.0f, z), box.size.z - 1.0f));
     return ix + LAO_I(box.size.x) * (iy + LAO_I(box.size.y) * iz);
 }
 /* What a cell lists: cones up to this distance from its centre, mm. */
@@ -618,9 +619,11 @@ struct sdv_march {
     float distance, cone; /* of the last sample */
     float falling;        /* 1: the distance fell up to the last sample */
     float d_min, t_min;   /* the least local minimum that was passed */
-    float inside;         /* 1: it started inside a vessel */
-    float steps;          /* samples so far */
-    float state;          /* SDV_MARCH_... */
+    float low, low_cone; /* over all samples: the ray's least distance to the nearest cone, and that
+                            cone */
+    float inside;        /* 1: it started inside a vessel */
+    float steps;         /* samples so far */
+    float state;         /* SDV_MARCH_... */
 };
 #ifndef LAO_GLSL
 typedef struct sdv_march sdv_march;
@@ -639,9 +642,11 @@ LAO_FN sdv_march sdv_march_start(lao_v2 span) {
     m.falling = 1.0f;
     m.d_min = SDV_FAR;
     m.t_min = 0.0f;
+    m.low = SDV_FAR;
+    m.low_cone = -1.0f;
     m.inside = 0.0f;
     m.steps = 0.0f;
-    m.state = span.x > span.y ? SDV_MARCH_LEAVES : SDV_MARCH_GOES;
+    m.state = span.x <= span.y ? SDV_MARCH_GOES : SDV_MARCH_LEAVES;
     return m;
 }
 /* Distance below which a point is on the surface. */
@@ -694,11 +699,30 @@ LAO_FN sdv_march sdv_march_minimum(sdv_march m, sdv_minimum found) {
     }
     return r;
 }
-/* Where a ray that misses the box is nearest to its middle. */
-LAO_FN float sdv_ray_middle(lao_v3 origin, lao_v3 direction, sdv_box box) {
+/* Keeps the cone that the whole ray, t >= 0, comes nearest to; `found`: one round from a sample's.
+ */
+LAO_FN sdv_march sdv_march_note(sdv_march m, sdv_minimum found) {
+    sdv_march r = m;
+    if (found.d < m.low) {
+        r.low = found.d;
+        r.low_cone = found.last;
+    }
+    return r;
+}
+/* The least distance of a ray that hits nothing is looked for between x and y: elsewhere it is more
+   than `low` away from the ball around the box. Where it is nearest to the ball's middle: z. */
+LAO_FN lao_v3 sdv_least_span(lao_v3 origin, lao_v3 direction, sdv_box box, float low) {
     lao_v3 middle = lao_v3_along(box.origin, box.size, 0.5f * box.cell);
+    LAO_EXACT float reach = 0.5f * box.cell * lao_sqrt(lao_v3_dot(box.size, box.size)) + low;
     LAO_EXACT float t = lao_v3_dot(lao_v3_sub(middle, origin), direction);
-    return lao_max(t, 0.0f);
+    return lao_v3_make(lao_max(0.0f, t - reach), t + reach, lao_max(0.0f, t));
+}
+/* From one sample to the next: nothing in between is much nearer than `low`. */
+#define SDV_LEAST_SAMPLES 128
+LAO_FN float sdv_least_step(sdv_near n, bool occupied, float far_step, float low, float cell) {
+    LAO_EXACT float clear = occupied ? lao_min(n.distance, sdv_near_reach(cell)) : far_step;
+    LAO_EXACT float step = clear - 0.9f * low;
+    return lao_max(lao_max(step, 0.2f * low), 0.25f * cell);
 }
 /* The sample before this one was a local minimum of the distance. */
 LAO_FN bool sdv_march_passed(sdv_march m, sdv_near n) {
@@ -729,7 +753,7 @@ LAO_FN sdv_march sdv_march_step(sdv_march m, sdv_near n, bool occupied, float fa
     r.older = m.before;
     r.before = m.t;
     r.t = m.t + step;
-    if (r.t > m.end) {
+    if (!(r.t <= m.end)) {
         r.state = SDV_MARCH_LEAVES;
     }
     return r;
@@ -2939,6 +2963,33 @@ static sdv_march sdv__minimum(const sdv_grid *g, const sdv_ray *ray, sdv_march m
     return sdv_march_minimum(m, found);
 }
 
+static sdv_march sdv__note(const sdv_grid *g, const sdv_ray *ray, sdv_march m, sdv_near n) {
+    if (n.cone >= 0.0f) {
+        const lao_v4 *ends = g->cones + 2 * (size_t)n.cone;
+        m = sdv_march_note(m, sdv_minimum_add(sdv_minimum_start(n.cone), ray->origin,
+                                              ray->direction, ends[0], ends[1], 0.0f, SDV_FAR));
+    }
+    return m;
+}
+
+/* The least distance of a ray that hits nothing. */
+static sdv_march sdv__least(const sdv_grid *g, const sdv_ray *ray, sdv_march m) {
+    sdv_box box = sdv__grid_box(g);
+    lao_v3 span = sdv_least_span(ray->origin, ray->direction, box, 0.0f);
+    float t = span.z;
+    int i;
+    for (i = 0; i < SDV_LEAST_SAMPLES && (i == 0 || t <= span.y); i++) {
+        lao_v3 p = lao_v3_along(ray->origin, ray->direction, t);
+        const lao_v4 *cell = sdv__cell_at(g, p);
+        sdv_near n = sdv__near_at(g, cell, p, ray->direction);
+        m = sdv__note(g, ray, m, n);
+        span = sdv_least_span(ray->origin, ray->direction, box, m.low);
+        t = i == 0 ? span.x : t + sdv_least_step(n, cell->w > 0.0f, cell->z, m.low, g->cell);
+    }
+    m.d_min = SDV_FAR;
+    return sdv__minimum(g, ray, m, m.low_cone, 0.0f, SDV_FAR);
+}
+
 /* On to the surface from a point close to it. */
 static void sdv__land(const sdv_grid *g, const sdv_ray *ray, const sdv_march *m, sdv_hit *hit) {
     lao_v3 gradient = lao_v3_make(0.0f, 0.0f, 1.0f);
@@ -2972,18 +3023,14 @@ SDV_API void sdv_trace(const sdv_grid *grid, const sdv_ray *ray, sdv_hit *hit) {
         if (occupied || nearest) {
             n = sdv__near_at(grid, cell, p, ray->direction);
         }
-        if (nearest && sdv_march_passed(m, n)) {
-            m = sdv__minimum(grid, ray, m, m.cone, m.older, m.t);
+        if (nearest) {
+            m = sdv__note(grid, ray, m, n);
+            m = sdv_march_passed(m, n) ? sdv__minimum(grid, ray, m, m.cone, m.older, m.t) : m;
         }
         m = sdv_march_step(m, n, occupied, cell->z, grid->cell);
     }
-    if (nearest && m.state != SDV_MARCH_HITS && m.falling > 0.5f && m.inside < 0.5f) {
-        if (m.steps < 0.5f) { /* past the box: from where the ray is nearest to its middle */
-            lao_v3 p = lao_v3_along(ray->origin, ray->direction,
-                                    sdv_ray_middle(ray->origin, ray->direction, box));
-            m.cone = sdv__near_at(grid, sdv__cell_at(grid, p), p, ray->direction).cone;
-        }
-        m = sdv__minimum(grid, ray, m, m.cone, m.older, SDV_FAR);
+    if (nearest && m.state != SDV_MARCH_HITS) {
+        m = sdv__least(grid, ray, m);
     }
     memset(hit, 0, sizeof *hit);
     hit->cone = SDV_NONE;
