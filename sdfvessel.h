@@ -67,6 +67,10 @@ extern "C" {
     X(TREE_SEGMENT, LAO_ERROR_INVALID_ARGUMENT, "a segment names a node that does not exist")      \
     X(TREE_ATTRIBUTE, LAO_ERROR_INVALID_ARGUMENT, "an attribute has no name or no values")         \
     X(LAYOUT_PH, LAO_ERROR_INVALID_ARGUMENT, "p_h is negative or no number")                       \
+    X(IMAGE_SIZE, LAO_ERROR_INVALID_ARGUMENT,                                                      \
+      "an image needs 1 to 32768 pixels each way and 1 to 64 channels")                            \
+    X(TARGET_SHAPE, LAO_ERROR_INVALID_ARGUMENT,                                                    \
+      "a target needs points that are finite, and triangles of points that exist")                 \
     X(GRID_CELLS, LAO_ERROR_INVALID_ARGUMENT,                                                      \
       "the grid needs 16 to 512 cells along its longest axis and 2^24 in all at most")             \
     X(GRID_LISTS, LAO_ERROR_INVALID_ARGUMENT,                                                      \
@@ -362,6 +366,72 @@ typedef struct sdv_hit {
  */
 SDV_API void sdv_trace(const sdv_grid *grid, const sdv_ray *ray, sdv_hit *hit);
 
+/* ------------------------------------------------------------------------------------------------
+ * what the field gives for free */
+
+enum { SDV_UNION = 0, SDV_INTERSECTION = 1, SDV_SUBTRACTION = 2 };
+enum { SDV_SHAPE_BALL = 0, SDV_SHAPE_BOX = 1, SDV_SHAPE_PLANE = 2 };
+
+/* Traces the tree combined with shapes, one after the other (L19 Fig. 11: max(a, -b) and so on):
+   hit->cone is SDV_NONE - 1 where the surface is a shape's, and `shape` (Optional) says which; its
+   normal is the shape's, turned inwards where it cuts. No d_min. Thread: any. */
+struct sdv_shape;
+#define SDV_CUT_CONE (SDV_NONE - 1u)
+SDV_API void sdv_trace_shapes(const sdv_grid *grid, const struct sdv_shape *shapes, uint32_t count,
+                              const sdv_ray *ray, sdv_hit *hit, uint32_t *shape);
+/* Light that reaches p, 0 .. 1, from the unit direction `light`, past what the field says is near
+   the way: 1 / hardness is the light's radius as seen from p. `bias` (mm) is the start, off the
+   surface. */
+SDV_API float sdv_shadow(const sdv_grid *grid, lao_v3 p, lao_v3 light, float hardness, float bias);
+/* Openness of p along its normal, 0 .. 1, from the field at 5 places up to `reach` mm away. */
+SDV_API float sdv_openness(const sdv_grid *grid, lao_v3 p, lao_v3 normal, float reach);
+
+/* What distances are measured to: a ball, a path, a surface. */
+typedef struct sdv_target_desc {
+    uint32_t point_count;
+    const float *points; /* 3 each, mm; without triangles a path through them, or one point */
+    uint32_t triangle_count;
+    const uint32_t *triangles; /* (Optional) 3 points each */
+    float radius;              /* mm, around all of it: a ball is one point with a radius */
+} sdv_target_desc;
+typedef struct sdv_target sdv_target;
+
+/* Copies the shape into a hierarchy of balls. Fails with NULL_ARGUMENT, MEMORY, TARGET_SHAPE. */
+SDV_API lao_result sdv_target_create(const sdv_host *host, const sdv_target_desc *desc,
+                                     sdv_target **target);
+SDV_API void sdv_target_free(sdv_target *target);
+/* Distance of a point to the target, mm; negative inside its radius only. Thread: any. */
+SDV_API float sdv_target_point(const sdv_target *target, lao_v3 p);
+/* Least signed distance to the round cone of the target's points, less its radius, exact: negative
+   where they overlap. A closed surface around a cone does not touch it. Thread: any. */
+SDV_API float sdv_target_cone(const sdv_target *target, lao_v4 a, lao_v4 b);
+/* Per segment of the tree (`segments`, Optional) and per reduced node (`nodes`, Optional): the
+   least over the segments from the node up to its reduced parent; NaN at roots and extra nodes. */
+SDV_API lao_result sdv_target_distances(const sdv_host *host, const sdv_target *target,
+                                        const sdv_tree *tree, const sdv_reduced *reduced,
+                                        float *segments, float *nodes);
+
+/* ------------------------------------------------------------------------------------------------
+ * pull-push */
+
+enum { SDV_PULL_MEAN = 0, SDV_PULL_SUM = 1 };     /* weight of a child: 1/4, 1 */
+enum { SDV_PUSH_EQUAL = 0, SDV_PUSH_SPLINE = 1 }; /* the 4 nearest parents: 1/4; 9, 3, 3, 1 / 16 */
+
+typedef struct sdv_pull_push_desc {
+    uint32_t width, height, channels;
+    float *values;     /* channels per pixel; in: where weights > 0, out: everywhere */
+    float *weights;    /* 1 per pixel, >= 0 (else 0); out: 1 everywhere */
+    uint32_t pull;     /* SDV_PULL_... */
+    uint32_t push;     /* SDV_PUSH_... */
+    uint32_t exponent; /* k, 1 .. 1023: how little a pixel takes over from its parents; 0: 1 */
+} sdv_pull_push_desc;
+
+/* Fills an image from its weighted pixels by a pyramid of ceil-halved levels (L19 3.3 with METHODS
+   6). Nothing to fill from: values become 0, weights stay 0, *empty (Optional) is 1. Fails with
+   NULL_ARGUMENT, IMAGE_SIZE, MEMORY, CANCELLED (the image is then in between). */
+SDV_API lao_result sdv_pull_push(const sdv_host *host, const sdv_pull_push_desc *desc,
+                                 uint32_t *empty);
+
 #ifdef __cplusplus
 }
 #endif
@@ -556,6 +626,16 @@ LAO_FN lao_v2 sdv_ray_box(lao_v3 origin, lao_v3 direction, sdv_box box) {
         lao_max(lao_max(lao_min(x0, x1), lao_min(y0, y1)), lao_max(lao_min(z0, z1), 0.0f));
     LAO_EXACT float to = lao_min(lao_min(lao_max(x0, x1), lao_max(y0, y1)), lao_max(z0, z1));
     return lao_v2_make(from, to);
+}
+
+/* Distance of p to the box, 0 inside. */
+LAO_FN float sdv_box_distance(lao_v3 p, sdv_box box) {
+    LAO_EXACT float x = lao_max(box.origin.x - p.x, p.x - box.origin.x - box.size.x * box.cell);
+    LAO_EXACT float y = lao_max(box.origin.y - p.y, p.y - box.origin.y - box.size.y * box.cell);
+    LAO_EXACT float z = lao_max(box.origin.z - p.z, p.z - box.origin.z - box.size.z * box.cell);
+    lao_v3 apart = lao_v3_make(lao_max(x, 0.0f), lao_max(y, 0.0f), lao_max(z, 0.0f));
+    LAO_EXACT float r = lao_sqrt(lao_v3_dot(apart, apart));
+    return r;
 }
 
 /* The nearest of the cones of a list at a point of a ray, and how far the ray may go before it can
@@ -767,6 +847,282 @@ LAO_FN float sdv_polish(float t, float distance, lao_v3 gradient, lao_v3 directi
     LAO_EXACT float most = 0.1f * cell;
     LAO_EXACT float r = t + lao_min(lao_max(step, -most), most);
     return r;
+}
+/* ---- shapes and Boolean operations */
+/* kind: SDV_SHAPE_...; ball: a = centre, radius; box: a = centre, b = half its size; plane: a =
+   unit normal, offset, inside where normal . p < offset. */
+struct sdv_shape {
+    lao_v4 a, b;
+    lao_int kind, operation;
+};
+#ifndef LAO_GLSL
+typedef struct sdv_shape sdv_shape;
+#endif
+#ifdef LAO_GLSL
+#define SDV_UNION 0
+#define SDV_INTERSECTION 1
+#define SDV_SUBTRACTION 2
+#define SDV_SHAPE_BALL 0
+#define SDV_SHAPE_BOX 1
+#define SDV_SHAPE_PLANE 2
+#endif
+LAO_FN lao_v3 sdv_box_apart(lao_v3 p, lao_v4 centre, lao_v4 half_size) {
+    LAO_EXACT float x = lao_abs(p.x - centre.x) - half_size.x;
+    LAO_EXACT float y = lao_abs(p.y - centre.y) - half_size.y;
+    LAO_EXACT float z = lao_abs(p.z - centre.z) - half_size.z;
+    return lao_v3_make(x, y, z);
+}
+LAO_FN float sdv_shape_distance(lao_v3 p, sdv_shape shape) {
+    if (shape.kind == SDV_SHAPE_PLANE) {
+        LAO_EXACT float d = lao_v3_dot(p, lao_v3_make(shape.a.x, shape.a.y, shape.a.z)) - shape.a.w;
+        return d;
+    }
+    if (shape.kind == SDV_SHAPE_BOX) {
+        lao_v3 q = sdv_box_apart(p, shape.a, shape.b);
+        lao_v3 o = lao_v3_make(lao_max(q.x, 0.0f), lao_max(q.y, 0.0f), lao_max(q.z, 0.0f));
+        LAO_EXACT float d =
+            lao_sqrt(lao_v3_dot(o, o)) + lao_min(lao_max(q.x, lao_max(q.y, q.z)), 0.0f);
+        return d;
+    }
+    lao_v3 q = lao_v3_sub(p, lao_v3_make(shape.a.x, shape.a.y, shape.a.z));
+    LAO_EXACT float d = lao_sqrt(lao_v3_dot(q, q)) - shape.a.w;
+    return d;
+}
+LAO_FN lao_v3 sdv_shape_gradient(lao_v3 p, sdv_shape shape) {
+    lao_v3 a = lao_v3_make(shape.a.x, shape.a.y, shape.a.z);
+    lao_v3 up = lao_v3_make(0.0f, 0.0f, 1.0f);
+    if (shape.kind == SDV_SHAPE_PLANE) {
+        return a;
+    }
+    lao_v3 q = lao_v3_sub(p, a);
+    if (shape.kind != SDV_SHAPE_BOX) {
+        return lao_v3_unit(q, up);
+    }
+    lao_v3 d = sdv_box_apart(p, shape.a, shape.b);
+    lao_v3 o = lao_v3_make(lao_max(d.x, 0.0f), lao_max(d.y, 0.0f), lao_max(d.z, 0.0f));
+    if (!(lao_v3_dot(o, o) > 0.0f)) { /* inside: the nearest face */
+        LAO_EXACT float most = lao_max(d.x, lao_max(d.y, d.z));
+        o = lao_v3_make(0.0f, 0.0f, 1.0f);
+        if (d.x >= most) {
+            o = lao_v3_make(1.0f, 0.0f, 0.0f);
+        } else if (d.y >= most) {
+            o = lao_v3_make(0.0f, 1.0f, 0.0f);
+        }
+    }
+    return lao_v3_unit(
+        lao_v3_make(q.x < 0.0f ? -o.x : o.x, q.y < 0.0f ? -o.y : o.y, q.z < 0.0f ? -o.z : o.z), up);
+}
+/* A distance, and whose it is: part -1: the tree's; i: that of shape i. side -1: turned inside out.
+ */
+struct sdv_solid {
+    float distance, side;
+    lao_int part;
+};
+#ifndef LAO_GLSL
+typedef struct sdv_solid sdv_solid;
+#endif
+LAO_FN sdv_solid sdv_solid_start(float distance) {
+    sdv_solid s;
+    s.distance = distance;
+    s.side = 1.0f;
+    s.part = -1;
+    return s;
+}
+/* min(a, b), max(a, b), max(a, -b): lower bounds of the true distance, never of wrong sign. */
+LAO_FN sdv_solid sdv_solid_add(sdv_solid s, float distance, lao_int operation, lao_int part) {
+    sdv_solid r = s;
+    LAO_EXACT float d = operation == SDV_SUBTRACTION ? -distance : distance;
+    if (operation == SDV_UNION ? d < s.distance : d > s.distance) {
+        r.distance = d;
+        r.side = operation == SDV_SUBTRACTION ? -1.0f : 1.0f;
+        r.part = part;
+    }
+    return r;
+}
+
+/* ---- outlines and shadows from d_min (L19 5 with METHODS 5.4); lengths in mm */
+/* Outside the tree, nearer to it than `width`. */
+LAO_FN bool sdv_is_silhouette(bool hit, float d_min, float width) {
+    return !hit && d_min < width;
+}
+/* The same, and in front of parts farther away. */
+LAO_FN bool sdv_is_contour(float d_min, float width) {
+    return d_min < width;
+}
+/* The rim of something `depth` mm in front, wider the deeper the gap: d_min < min(ratio depth,
+   most). t, t_min: the ray's parameters of the surface and of the near miss. */
+LAO_FN bool sdv_is_depth_shadow(float d_min, float t_min, float t, float ratio, float most) {
+    LAO_EXACT float depth = lao_abs(t - t_min);
+    LAO_EXACT float width = lao_min(ratio * depth, most);
+    return d_min < width;
+}
+/* Soft shadow: `light` so far, 1 at the start, after a sample of the field at t on the way. */
+LAO_FN float sdv_shadow_add(float light, float distance, float t, float hardness) {
+    LAO_EXACT float passed = hardness * distance / lao_max(t, 1.0e-6f);
+    return lao_min(light, lao_max(passed, 0.0f));
+}
+/* Ambient occlusion: sample i of SDV_OPEN_SAMPLES is that far along the normal, and what it adds.
+ */
+#define SDV_OPEN_SAMPLES 5
+LAO_FN float sdv_open_place(float reach, lao_int i) {
+    LAO_EXACT float r = reach * (LAO_F(i) + 1.0f) / LAO_F(SDV_OPEN_SAMPLES);
+    return r;
+}
+LAO_FN float sdv_open_weight(lao_int i) {
+    return lao_bits_float(LAO_U(127 - i) << 23u); /* 2^-i */
+}
+/* What the sample's ball lacks of free room, as part of it. */
+LAO_FN float sdv_open_add(float closed, float distance, float place, lao_int i) {
+    LAO_EXACT float lack = lao_clamp01((place - distance) / place);
+    LAO_EXACT float r = closed + sdv_open_weight(i) * lack;
+    return r;
+}
+LAO_FN float sdv_open_result(float closed) {
+    LAO_EXACT float r = 1.0f - closed / (2.0f - sdv_open_weight(SDV_OPEN_SAMPLES - 1));
+    return lao_clamp01(r);
+}
+
+/* ---- least distances to round cones, exact (a cone is convex, and so is its distance on a segment
+   or triangle) */
+/* Of the points p .. q. */
+LAO_FN float sdv_segment_cone(lao_v3 p, lao_v3 q, lao_v4 a, lao_v4 b) {
+    lao_v3 pq = lao_v3_sub(q, p);
+    LAO_EXACT float length = lao_sqrt(lao_v3_dot(pq, pq));
+    if (!(length > 1.0e-12f)) {
+        return sdv_round_cone(p, a, b);
+    }
+    lao_v3 direction = lao_v3_scale(pq, 1.0f / length);
+    lao_v2 nearest = sdv_line_nearest(p, direction, a, b);
+    LAO_EXACT float t = lao_min(lao_max(0.0f, nearest.y), length);
+    return sdv_round_cone(lao_v3_along(p, direction, t), a, b);
+}
+/* Where the point p of the plane of a triangle is: not outside of any edge. n: its normal, any
+ * length. */
+LAO_FN bool sdv_in_triangle(lao_v3 p, lao_v3 u, lao_v3 v, lao_v3 w, lao_v3 n) {
+    LAO_EXACT float a = lao_v3_dot(lao_v3_cross(lao_v3_sub(v, u), lao_v3_sub(p, u)), n);
+    LAO_EXACT float b = lao_v3_dot(lao_v3_cross(lao_v3_sub(w, v), lao_v3_sub(p, v)), n);
+    LAO_EXACT float c = lao_v3_dot(lao_v3_cross(lao_v3_sub(u, w), lao_v3_sub(p, w)), n);
+    return a >= 0.0f && b >= 0.0f && c >= 0.0f;
+}
+/* The ball at `s` of the way from a to b: of the points of the plane, its centre's foot is nearest.
+ */
+LAO_FN float sdv_triangle_ball(float least, lao_v3 u, lao_v3 v, lao_v3 w, lao_v3 n, lao_v4 a,
+                               lao_v4 b, float s) {
+    lao_v3 ab = lao_v3_make(b.x - a.x, b.y - a.y, b.z - a.z);
+    lao_v3 c = lao_v3_along(lao_v3_make(a.x, a.y, a.z), ab, s);
+    LAO_EXACT float height = lao_v3_dot(lao_v3_sub(c, u), n);
+    lao_v3 foot = lao_v3_along(c, n, -height);
+    if (!sdv_in_triangle(foot, u, v, w, n)) {
+        return least;
+    }
+    return lao_min(least, sdv_round_cone(foot, a, b));
+}
+/* Of the points of a triangle: on an edge, or below an end of the axis, or where the axis meets the
+ * plane. */
+LAO_FN float sdv_triangle_cone(lao_v3 u, lao_v3 v, lao_v3 w, lao_v4 a, lao_v4 b) {
+    LAO_EXACT float least =
+        lao_min(sdv_segment_cone(u, v, a, b),
+                lao_min(sdv_segment_cone(v, w, a, b), sdv_segment_cone(w, u, a, b)));
+    lao_v3 zero = lao_v3_make(0.0f, 0.0f, 0.0f);
+    lao_v3 n = lao_v3_unit(lao_v3_cross(lao_v3_sub(v, u), lao_v3_sub(w, u)), zero);
+    if (!(lao_v3_dot(n, n) > 0.5f)) {
+        return least;
+    }
+    LAO_EXACT float ha = lao_v3_dot(lao_v3_sub(lao_v3_make(a.x, a.y, a.z), u), n);
+    LAO_EXACT float hb = lao_v3_dot(lao_v3_sub(lao_v3_make(b.x, b.y, b.z), u), n);
+    least = sdv_triangle_ball(least, u, v, w, n, a, b, 0.0f);
+    least = sdv_triangle_ball(least, u, v, w, n, a, b, 1.0f);
+    if ((ha < 0.0f) != (hb < 0.0f)) {
+        least = sdv_triangle_ball(least, u, v, w, n, a, b, ha / (ha - hb));
+    }
+    return least;
+}
+
+/* ---- pull-push (L19 Eqs. 4 - 9 with METHODS 6): four channels at a time */
+struct sdv_mix {
+    lao_v4 value;
+    float weight, share; /* sums of h min(w, 1) and of h */
+};
+#ifndef LAO_GLSL
+typedef struct sdv_mix sdv_mix;
+#endif
+LAO_FN sdv_mix sdv_mix_start(lao_v4 zero) {
+    sdv_mix m;
+    m.value = zero;
+    m.weight = 0.0f;
+    m.share = 0.0f;
+    return m;
+}
+/* One child or parent that exists. */
+LAO_FN sdv_mix sdv_mix_add(sdv_mix m, lao_v4 value, float weight, float h) {
+    sdv_mix r = m;
+    LAO_EXACT float w = h * lao_min(weight, 1.0f);
+    if (!(w > 0.0f)) {
+        r.share = m.share + h;
+        return r;
+    }
+    LAO_EXACT float x = m.value.x + w * value.x;
+    LAO_EXACT float y = m.value.y + w * value.y;
+    LAO_EXACT float z = m.value.z + w * value.z;
+    LAO_EXACT float v = m.value.w + w * value.w;
+    r.value = lao_v4_make(x, y, z, v);
+    r.weight = m.weight + w;
+    r.share = m.share + h;
+    return r;
+}
+/* 0 where nothing had a weight. */
+LAO_FN lao_v4 sdv_mix_value(sdv_mix m) {
+    if (!(m.weight > 0.0f)) {
+        return lao_v4_make(0.0f, 0.0f, 0.0f, 0.0f);
+    }
+    LAO_EXACT float x = m.value.x / m.weight;
+    LAO_EXACT float y = m.value.y / m.weight;
+    LAO_EXACT float z = m.value.z / m.weight;
+    LAO_EXACT float v = m.value.w / m.weight;
+    return lao_v4_make(x, y, z, v);
+}
+/* Weight of a child in the pull. */
+LAO_FN float sdv_pull_share(lao_int pull) {
+    return pull == 1 ? 1.0f : 0.25f;
+}
+/* The two nearest parents of texel x along an axis, k = 0, 1, and their shares. */
+LAO_FN lao_int sdv_push_parent(lao_int x, lao_int k) {
+    lao_int beside = (x & 1) != 0 ? 1 : -1;
+    return (x >> 1) + (k != 0 ? beside : 0);
+}
+LAO_FN float sdv_push_share(lao_int push, lao_int k) {
+    if (push == 1) {
+        return k != 0 ? 0.25f : 0.75f;
+    }
+    return 0.5f;
+}
+/* How much of its own a texel keeps: 1 - (1 - w)^k. */
+LAO_FN float sdv_push_own(float weight, lao_int exponent) {
+    LAO_EXACT float a = 1.0f - lao_power(1.0f - lao_clamp01(weight), exponent);
+    return a;
+}
+/* A texel of value and own share after the push from its parents' mix. */
+LAO_FN lao_v4 sdv_push_value(sdv_mix parents, lao_v4 value, float own) {
+    if (!(own > 0.0f)) {
+        return sdv_mix_value(parents);
+    }
+    if (!(parents.weight > 0.0f) || own >= 1.0f) {
+        return value;
+    }
+    lao_v4 g = sdv_mix_value(parents);
+    LAO_EXACT float through = 1.0f - own;
+    LAO_EXACT float x = through * g.x + own * value.x;
+    LAO_EXACT float y = through * g.y + own * value.y;
+    LAO_EXACT float z = through * g.z + own * value.z;
+    LAO_EXACT float v = through * g.w + own * value.w;
+    return lao_v4_make(x, y, z, v);
+}
+LAO_FN float sdv_push_weight(sdv_mix parents, float own) {
+    if (!(parents.weight > 0.0f)) {
+        return own;
+    }
+    LAO_EXACT float w = (1.0f - own) * (parents.weight / parents.share) + own;
+    return w;
 }
 /* SDV_SHARED_END */
 
@@ -3040,6 +3396,572 @@ SDV_API void sdv_trace(const sdv_grid *grid, const sdv_ray *ray, sdv_hit *hit) {
     if (m.state == SDV_MARCH_HITS) {
         sdv__land(grid, ray, &m, hit);
     }
+}
+
+/* ================================================================================================
+ * shapes, shadow, openness */
+
+/* A lower bound of the tree's distance, exact close to the surface and inside. */
+static float sdv__tree_bound(const sdv_grid *g, lao_v3 p, uint32_t *cone) {
+    const lao_v4 *cell = sdv__cell_at(g, p);
+    float bound = cell->z, outside;
+    if (cell->w > 0.0f) {
+        bound = lao_min(sdv__list_distance(g, cell, p, cone), sdv_near_reach(g->cell));
+    }
+    outside = sdv_box_distance(p, sdv__grid_box(g));
+    return outside > 0.0f ? lao_max(bound, outside) : bound;
+}
+static sdv_solid sdv__solid_at(const sdv_grid *g, const sdv_shape *shapes, uint32_t count, lao_v3 p,
+                               uint32_t *cone) {
+    sdv_solid s = sdv_solid_start(sdv__tree_bound(g, p, cone));
+    uint32_t i;
+    for (i = 0; i < count; i++) {
+        s = sdv_solid_add(s, sdv_shape_distance(p, shapes[i]), shapes[i].operation, (lao_int)i);
+    }
+    return s;
+}
+static lao_v3 sdv__solid_gradient(const sdv_grid *g, const sdv_shape *shapes, const sdv_solid *s,
+                                  lao_v3 p, uint32_t cone) {
+    if (s->part >= 0) {
+        return lao_v3_scale(sdv_shape_gradient(p, shapes[s->part]), s->side);
+    }
+    return sdv_round_cone_gradient(p, g->cones[2 * (size_t)cone], g->cones[2 * (size_t)cone + 1]);
+}
+static void sdv__solid_land(const sdv_grid *g, const sdv_shape *shapes, uint32_t count,
+                            const sdv_ray *ray, float t, sdv_hit *hit, uint32_t *shape) {
+    lao_v3 gradient;
+    int i;
+    for (i = 0; i <= SDV_POLISH_ROUNDS; i++) {
+        uint32_t cone = 0;
+        sdv_solid s;
+        hit->position = lao_v3_along(ray->origin, ray->direction, t);
+        s = sdv__solid_at(g, shapes, count, hit->position, &cone);
+        gradient = sdv__solid_gradient(g, shapes, &s, hit->position, cone);
+        hit->cone = s.part >= 0 ? SDV_CUT_CONE : cone;
+        hit->normal = hit->inside ? lao_v3_scale(gradient, -1.0f) : gradient;
+        hit->t = t;
+        if (shape) {
+            *shape = s.part >= 0 ? (uint32_t)s.part : SDV_NONE;
+        }
+        t = sdv_polish(t, s.distance, gradient, ray->direction, g->cell);
+    }
+}
+
+SDV_API void sdv_trace_shapes(const sdv_grid *grid, const sdv_shape *shapes, uint32_t count,
+                              const sdv_ray *ray, sdv_hit *hit, uint32_t *shape) {
+    float t = 0.0f;
+    uint32_t cone = 0, i;
+    memset(hit, 0, sizeof *hit);
+    hit->cone = SDV_NONE;
+    hit->d_min = SDV_FAR;
+    if (shape) {
+        *shape = SDV_NONE;
+    }
+    for (i = 0; i < SDV_MAX_STEPS && t < SDV_FAR; i++) {
+        lao_v3 p = lao_v3_along(ray->origin, ray->direction, t);
+        sdv_solid s = sdv__solid_at(grid, shapes, count, p, &cone);
+        float left;
+        hit->inside = i == 0 ? s.distance < 0.0f : hit->inside;
+        left = hit->inside ? -s.distance : s.distance;
+        hit->steps++;
+        if (left < sdv_hit_distance(grid->cell)) {
+            sdv__solid_land(grid, shapes, count, ray, t, hit, shape);
+            return;
+        }
+        t += left;
+    }
+}
+
+SDV_API float sdv_shadow(const sdv_grid *grid, lao_v3 p, lao_v3 light, float hardness, float bias) {
+    lao_v2 span = sdv_ray_box(p, light, sdv__grid_box(grid));
+    float lit = 1.0f, t = lao_max(bias, span.x);
+    int i;
+    for (i = 0; i < SDV_MAX_STEPS && t <= span.y && lit > 0.0f; i++) {
+        lao_v3 q = lao_v3_along(p, light, t);
+        float d = sdv_grid_distance(grid, q, NULL);
+        uint32_t cone;
+        lit = sdv_shadow_add(lit, d, t, hardness);
+        lit = d < sdv_hit_distance(grid->cell) ? 0.0f : lit;
+        t += lao_max(sdv__tree_bound(grid, q, &cone), sdv_hit_distance(grid->cell));
+    }
+    return lit;
+}
+SDV_API float sdv_openness(const sdv_grid *grid, lao_v3 p, lao_v3 normal, float reach) {
+    float closed = 0.0f;
+    lao_int i;
+    for (i = 0; i < SDV_OPEN_SAMPLES && reach > 0.0f; i++) {
+        float place = sdv_open_place(reach, i);
+        lao_v3 q = lao_v3_along(p, normal, place);
+        closed = sdv_open_add(closed, sdv_grid_distance(grid, q, NULL), place, i);
+    }
+    return sdv_open_result(closed);
+}
+
+/* ================================================================================================
+ * targets: pieces (points, segments, triangles) sorted along a Morton curve, under a binary tree of
+   balls */
+
+enum { SDV__PIECES = 4 }; /* of a leaf */
+typedef struct sdv__piece {
+    lao_v3 u, v, w; /* a segment has w = v, a point u = v = w */
+} sdv__piece;
+struct sdv_target {
+    lao_allocator allocator;
+    uint32_t piece_count, leaf_count; /* leaves: a power of two, the last ones may be empty */
+    sdv__piece *pieces;
+    lao_v4 *balls; /* 2 leaf_count: children of i are 2 i, 2 i + 1, the root is 1; w < 0: empty */
+    float radius;
+};
+
+static lao_result sdv__target_check(const sdv_host *host, const sdv_target_desc *desc) {
+    uint32_t i;
+    if (!desc->points || (desc->triangle_count && !desc->triangles)) {
+        return sdv__fail(host, SDV_LOG_NULL_ARGUMENT, "arrays of sdv_target_desc");
+    }
+    if (desc->point_count < 1 || desc->point_count > 1u << 28 || desc->triangle_count > 1u << 28 ||
+        !(desc->radius >= 0.0f && desc->radius < SDV_FAR)) {
+        return sdv__fail(host, SDV_LOG_TARGET_SHAPE, "%u points, %u triangles", desc->point_count,
+                         desc->triangle_count);
+    }
+    for (i = 0; i < 3 * desc->point_count; i++) {
+        if (!(fabsf(desc->points[i]) <= 1e9f)) {
+            return sdv__fail(host, SDV_LOG_TARGET_SHAPE, "point %u", i / 3);
+        }
+    }
+    for (i = 0; i < 3 * desc->triangle_count; i++) {
+        if (desc->triangles[i] >= desc->point_count) {
+            return sdv__fail(host, SDV_LOG_TARGET_SHAPE, "triangle %u", i / 3);
+        }
+    }
+    return LAO_OK;
+}
+
+static lao_v3 sdv__point(const float *points, uint32_t i) {
+    const float *p = points + 3 * (size_t)i;
+    return lao_v3_make(p[0], p[1], p[2]);
+}
+static sdv__piece sdv__piece_make(const sdv_target_desc *desc, uint32_t i) {
+    sdv__piece s;
+    const uint32_t *corners = desc->triangle_count ? desc->triangles + 3 * (size_t)i : NULL;
+    uint32_t last = desc->point_count - 1;
+    s.u = sdv__point(desc->points, corners ? corners[0] : i);
+    s.v = sdv__point(desc->points, corners ? corners[1] : i < last ? i + 1 : i);
+    s.w = corners ? sdv__point(desc->points, corners[2]) : s.v;
+    return s;
+}
+static uint32_t sdv__spread(uint32_t v) { /* 10 bits, two free ones between */
+    v = (v | v << 16) & 0x030000ffu;
+    v = (v | v << 8) & 0x0300f00fu;
+    v = (v | v << 4) & 0x030c30c3u;
+    return (v | v << 2) & 0x09249249u;
+}
+static uint32_t sdv__morton(const sdv__piece *s, const double low[3], double size) {
+    const float *u = &s->u.x, *v = &s->v.x, *w = &s->w.x;
+    uint32_t key = 0, k;
+    for (k = 0; k < 3; k++) {
+        double c = ((double)u[k] + (double)v[k] + (double)w[k]) / 3 - low[k];
+        double cell = size > 0 ? c / size * 1023 : 0;
+        key |= sdv__spread(cell > 0 ? (cell < 1023 ? (uint32_t)cell : 1023u) : 0u) << k;
+    }
+    return key;
+}
+/* Order of ascending keys, 10 bits a round; `order` and `other` have count entries each. */
+static void sdv__sort(const uint32_t *keys, uint32_t count, uint32_t *order, uint32_t *other) {
+    uint32_t round, i;
+    for (i = 0; i < count; i++) {
+        order[i] = i;
+    }
+    for (round = 0; round < 30; round += 10) {
+        uint32_t first[1025];
+        memset(first, 0, sizeof first);
+        for (i = 0; i < count; i++) {
+            first[(keys[i] >> round & 1023u) + 1]++;
+        }
+        for (i = 0; i < 1024; i++) {
+            first[i + 1] += first[i];
+        }
+        for (i = 0; i < count; i++) {
+            other[first[keys[order[i]] >> round & 1023u]++] = order[i];
+        }
+        memcpy(order, other, count * sizeof *order);
+    }
+}
+/* The ball around the box of points; a margin makes up for rounding. */
+static lao_v4 sdv__box_ball(const lao_v3 *low, const lao_v3 *high) {
+    lao_v3 d = lao_v3_sub(*high, *low);
+    lao_v3 c = lao_v3_along(*low, d, 0.5f);
+    float margin = 1e-6f * (fabsf(c.x) + fabsf(c.y) + fabsf(c.z));
+    return lao_v4_make(c.x, c.y, c.z, 0.50001f * lao_sqrt(lao_v3_dot(d, d)) + margin);
+}
+static void sdv__box_grow(lao_v3 *low, lao_v3 *high, lao_v3 p) {
+    *low = lao_v3_make(lao_min(low->x, p.x), lao_min(low->y, p.y), lao_min(low->z, p.z));
+    *high = lao_v3_make(lao_max(high->x, p.x), lao_max(high->y, p.y), lao_max(high->z, p.z));
+}
+static void sdv__target_balls(sdv_target *t) {
+    uint32_t node, k, wide = t->leaf_count * SDV__PIECES; /* pieces below a node */
+    for (node = 1; node < 2 * t->leaf_count; node++) {
+        uint32_t first, end;
+        lao_v3 low, high;
+        wide /= node > 1 && (node & (node - 1)) == 0 ? 2u : 1u; /* the first of its level */
+        first = node * wide - t->leaf_count * SDV__PIECES;
+        end = first + wide < t->piece_count ? first + wide : t->piece_count;
+        t->balls[node] = lao_v4_make(0.0f, 0.0f, 0.0f, -1.0f);
+        if (first >= end) {
+            continue;
+        }
+        low = high = t->pieces[first].u;
+        for (k = first; k < end; k++) {
+            sdv__box_grow(&low, &high, t->pieces[k].u);
+            sdv__box_grow(&low, &high, t->pieces[k].v);
+            sdv__box_grow(&low, &high, t->pieces[k].w);
+        }
+        t->balls[node] = sdv__box_ball(&low, &high);
+    }
+}
+static void sdv__target_fill(sdv_target *t, const sdv_target_desc *desc, uint32_t *keys) {
+    uint32_t *order = keys + t->piece_count, *other = order + t->piece_count, i, k;
+    double low[3] = {0, 0, 0}, high[3] = {0, 0, 0}, size = 0;
+    for (i = 0; i < desc->point_count; i++) {
+        for (k = 0; k < 3; k++) {
+            double v = (double)desc->points[3 * (size_t)i + k];
+            low[k] = i == 0 || v < low[k] ? v : low[k];
+            high[k] = i == 0 || v > high[k] ? v : high[k];
+            size = high[k] - low[k] > size ? high[k] - low[k] : size;
+        }
+    }
+    for (i = 0; i < t->piece_count; i++) {
+        sdv__piece s = sdv__piece_make(desc, i);
+        keys[i] = sdv__morton(&s, low, size);
+    }
+    sdv__sort(keys, t->piece_count, order, other);
+    for (i = 0; i < t->piece_count; i++) {
+        t->pieces[i] = sdv__piece_make(desc, order[i]);
+    }
+    sdv__target_balls(t);
+}
+
+SDV_API lao_result sdv_target_create(const sdv_host *host, const sdv_target_desc *desc,
+                                     sdv_target **target) {
+    lao_allocator a = sdv__allocator(host);
+    sdv_target *t;
+    uint32_t *keys;
+    lao_result result;
+    if (!desc || !target) {
+        return sdv__fail(host, SDV_LOG_NULL_ARGUMENT, "sdv_target_create");
+    }
+    result = sdv__target_check(host, desc);
+    if (result != LAO_OK) {
+        return result;
+    }
+    t = (sdv_target *)sdv__take(&a, 1, sizeof *t);
+    if (!t) {
+        return sdv__fail(host, SDV_LOG_MEMORY, "a target");
+    }
+    memset(t, 0, sizeof *t);
+    t->allocator = a;
+    t->radius = desc->radius;
+    t->piece_count = desc->triangle_count ? desc->triangle_count : desc->point_count - 1;
+    t->piece_count = t->piece_count ? t->piece_count : 1; /* a point */
+    for (t->leaf_count = 1; t->leaf_count * SDV__PIECES < t->piece_count; t->leaf_count *= 2) {
+    }
+    t->pieces = (sdv__piece *)sdv__take(&a, t->piece_count, sizeof *t->pieces);
+    t->balls = (lao_v4 *)sdv__take(&a, 2 * (uint64_t)t->leaf_count, sizeof *t->balls);
+    keys = (uint32_t *)sdv__take(&a, 3 * (uint64_t)t->piece_count, sizeof *keys);
+    if (t->pieces && t->balls && keys) {
+        sdv__target_fill(t, desc, keys);
+        *target = t;
+    } else {
+        result = sdv__fail(host, SDV_LOG_MEMORY, "a target of %u pieces", t->piece_count);
+        sdv_target_free(t);
+    }
+    sdv__give(&a, keys);
+    return result;
+}
+
+SDV_API void sdv_target_free(sdv_target *target) {
+    if (target) {
+        lao_allocator a = target->allocator;
+        sdv__give(&a, target->pieces);
+        sdv__give(&a, target->balls);
+        sdv__give(&a, target);
+    }
+}
+
+static int sdv__same_point(lao_v3 a, lao_v3 b) {
+    return a.x == b.x && a.y == b.y && a.z == b.z;
+}
+static float sdv__piece_cone(const sdv__piece *s, lao_v4 a, lao_v4 b) {
+    if (sdv__same_point(s->v, s->w)) {
+        return sdv_segment_cone(s->u, s->v, a, b);
+    }
+    return sdv_triangle_cone(s->u, s->v, s->w, a, b);
+}
+/* No point of the ball is nearer to the cone than this. */
+static float sdv__ball_cone(lao_v4 ball, lao_v4 a, lao_v4 b) {
+    float d = sdv_round_cone(lao_v3_make(ball.x, ball.y, ball.z), a, b);
+    return ball.w < 0.0f ? SDV_FAR : d - ball.w - 1e-5f * fabsf(d);
+}
+SDV_API float sdv_target_cone(const sdv_target *target, lao_v4 a, lao_v4 b) {
+    uint32_t stack[64], n = 0, i;
+    float least = SDV_FAR;
+    stack[n++] = 1;
+    while (n > 0) {
+        uint32_t node = stack[--n];
+        if (sdv__ball_cone(target->balls[node], a, b) >= least) {
+            continue;
+        }
+        if (node < target->leaf_count) { /* the nearer child next */
+            uint32_t child = 2 * node;
+            uint32_t second = sdv__ball_cone(target->balls[child], a, b) <
+                              sdv__ball_cone(target->balls[child + 1], a, b);
+            stack[n++] = child + second;
+            stack[n++] = child + !second;
+            continue;
+        }
+        i = (node - target->leaf_count) * SDV__PIECES;
+        for (node = i; node < i + SDV__PIECES && node < target->piece_count; node++) {
+            float d = sdv__piece_cone(target->pieces + node, a, b);
+            least = d < least ? d : least;
+        }
+    }
+    return least - target->radius;
+}
+SDV_API float sdv_target_point(const sdv_target *target, lao_v3 p) {
+    lao_v4 ball = lao_v4_make(p.x, p.y, p.z, 0.0f);
+    return sdv_target_cone(target, ball, ball);
+}
+
+enum { SDV__CHUNK = 64 }; /* segments or rows of one job item */
+typedef struct sdv__measure {
+    const sdv_target *target;
+    const sdv_tree *tree;
+    float *segments;
+} sdv__measure;
+static void sdv__measure_chunk(void *arg, uint32_t chunk) {
+    const sdv__measure *m = (const sdv__measure *)arg;
+    uint32_t i, first = chunk * SDV__CHUNK;
+    for (i = first; i < first + SDV__CHUNK && i < m->tree->segment_count; i++) {
+        const sdv_segment *s = m->tree->segments + i;
+        m->segments[i] =
+            sdv_target_cone(m->target, m->tree->nodes[s->parent], m->tree->nodes[s->child]);
+    }
+}
+SDV_API lao_result sdv_target_distances(const sdv_host *host, const sdv_target *target,
+                                        const sdv_tree *tree, const sdv_reduced *reduced,
+                                        float *segments, float *nodes) {
+    lao_allocator a = sdv__allocator(host);
+    sdv__measure m;
+    sdv__work work;
+    uint32_t i;
+    int cancelled;
+    if (!target || !tree || !tree->memory || (nodes && (!reduced || !reduced->memory))) {
+        return sdv__fail(host, SDV_LOG_NULL_ARGUMENT, "sdv_target_distances");
+    }
+    m.target = target;
+    m.tree = tree;
+    m.segments =
+        segments ? segments : (float *)sdv__take(&a, tree->segment_count, sizeof *m.segments);
+    if (!m.segments) {
+        return sdv__fail(host, SDV_LOG_MEMORY, "%u distances", tree->segment_count);
+    }
+    work.host = host;
+    work.done = 0;
+    work.total = (tree->segment_count + SDV__CHUNK - 1) / SDV__CHUNK;
+    cancelled = sdv__run(&work, (uint32_t)work.total, sdv__measure_chunk, &m);
+    for (i = 0; nodes && !cancelled && i < reduced->node_count; i++) {
+        nodes[i] = lao_bits_float(0x7fc00000u);
+    }
+    for (i = 0; nodes && !cancelled && i < tree->node_count; i++) {
+        uint32_t segment = tree->parent_segments[i];
+        float *least = nodes + reduced->owners[i];
+        if (segment != SDV_NONE && !(*least <= m.segments[segment])) {
+            *least = m.segments[segment];
+        }
+    }
+    if (!segments) {
+        sdv__give(&a, m.segments);
+    }
+    return cancelled ? sdv__fail(host, SDV_LOG_CANCELLED, "measuring distances") : LAO_OK;
+}
+
+/* ================================================================================================
+ * pull-push */
+
+typedef struct sdv__level {
+    float *values, *weights;
+    uint32_t width, height;
+} sdv__level;
+typedef struct sdv__pull {
+    const sdv_pull_push_desc *desc;
+    const sdv__level *fine, *coarse;
+    lao_int exponent;
+} sdv__pull;
+
+/* Up to four channels of a texel from channel c on. */
+static lao_v4 sdv__channels(const sdv__level *l, size_t texel, uint32_t channels, uint32_t c) {
+    const float *v = l->values + texel * channels + c;
+    uint32_t n = channels - c;
+    return lao_v4_make(v[0], n > 1 ? v[1] : 0.0f, n > 2 ? v[2] : 0.0f, n > 3 ? v[3] : 0.0f);
+}
+static void sdv__channels_set(const sdv__level *l, size_t texel, uint32_t channels, uint32_t c,
+                              lao_v4 value) {
+    const float *v = &value.x;
+    uint32_t k;
+    for (k = 0; k < 4 && c + k < channels; k++) {
+        l->values[texel * channels + c + k] = v[k];
+    }
+}
+static void sdv__pull_texel(const sdv__pull *p, uint32_t x, uint32_t y) {
+    const sdv__level *fine = p->fine, *coarse = p->coarse;
+    size_t texel = (size_t)coarse->width * y + x;
+    uint32_t c, i, channels = p->desc->channels;
+    float h = sdv_pull_share((lao_int)p->desc->pull);
+    for (c = 0; c < channels; c += 4) {
+        sdv_mix m = sdv_mix_start(lao_v4_make(0.0f, 0.0f, 0.0f, 0.0f));
+        for (i = 0; i < 4; i++) {
+            uint32_t fx = 2 * x + (i & 1u), fy = 2 * y + (i >> 1);
+            size_t child = (size_t)fine->width * fy + fx;
+            if (fx < fine->width && fy < fine->height) {
+                m = sdv_mix_add(m, sdv__channels(fine, child, channels, c), fine->weights[child],
+                                h);
+            }
+        }
+        sdv__channels_set(coarse, texel, channels, c, sdv_mix_value(m));
+        coarse->weights[texel] = m.weight;
+    }
+}
+static void sdv__push_texel(const sdv__pull *p, uint32_t x, uint32_t y) {
+    const sdv__level *fine = p->fine, *coarse = p->coarse;
+    size_t texel = (size_t)fine->width * y + x;
+    uint32_t c, channels = p->desc->channels;
+    lao_int i, push = (lao_int)p->desc->push;
+    float own = sdv_push_own(fine->weights[texel], p->exponent), weight = 0.0f;
+    for (c = 0; c < channels; c += 4) {
+        sdv_mix m = sdv_mix_start(lao_v4_make(0.0f, 0.0f, 0.0f, 0.0f));
+        for (i = 0; i < 4; i++) {
+            lao_int px = sdv_push_parent((lao_int)x, i & 1);
+            lao_int py = sdv_push_parent((lao_int)y, i >> 1);
+            float h = sdv_push_share(push, i & 1) * sdv_push_share(push, i >> 1);
+            if (px >= 0 && py >= 0 && px < (lao_int)coarse->width && py < (lao_int)coarse->height) {
+                size_t parent = (size_t)coarse->width * (size_t)py + (size_t)px;
+                m = sdv_mix_add(m, sdv__channels(coarse, parent, channels, c),
+                                coarse->weights[parent], h);
+            }
+        }
+        sdv__channels_set(fine, texel, channels, c,
+                          sdv_push_value(m, sdv__channels(fine, texel, channels, c), own));
+        weight = sdv_push_weight(m, own);
+    }
+    fine->weights[texel] = weight;
+}
+static void sdv__pull_rows(void *arg, uint32_t chunk) {
+    const sdv__pull *p = (const sdv__pull *)arg;
+    uint32_t x, y, first = chunk * SDV__CHUNK;
+    for (y = first; y < first + SDV__CHUNK && y < p->coarse->height; y++) {
+        for (x = 0; x < p->coarse->width; x++) {
+            sdv__pull_texel(p, x, y);
+        }
+    }
+}
+static void sdv__push_rows(void *arg, uint32_t chunk) {
+    const sdv__pull *p = (const sdv__pull *)arg;
+    uint32_t x, y, first = chunk * SDV__CHUNK;
+    for (y = first; y < first + SDV__CHUNK && y < p->fine->height; y++) {
+        for (x = 0; x < p->fine->width; x++) {
+            sdv__push_texel(p, x, y);
+        }
+    }
+}
+/* A pixel without a weight has no value either. */
+static void sdv__pull_clean(const sdv__level *l, uint32_t channels) {
+    size_t i, n = (size_t)l->width * l->height;
+    for (i = 0; i < n; i++) {
+        if (!(l->weights[i] > 0.0f)) {
+            l->weights[i] = 0.0f;
+            memset(l->values + i * channels, 0, channels * sizeof *l->values);
+        }
+    }
+}
+enum { SDV__LEVELS = 17 };
+static uint32_t sdv__chunks(uint32_t rows) {
+    return (rows + SDV__CHUNK - 1) / SDV__CHUNK;
+}
+static int sdv__pull_run(const sdv_host *host, sdv__level *levels, uint32_t count, sdv__pull *p) {
+    sdv__work work;
+    const sdv__level *top = levels + count - 1;
+    uint32_t i;
+    work.host = host;
+    work.done = 0;
+    work.total = 0;
+    for (i = 0; i < count; i++) {
+        work.total += (i ? sdv__chunks(levels[i].height) : 0u) +
+                      (i + 1 < count ? sdv__chunks(levels[i].height) : 0u);
+    }
+    for (i = 1; i < count; i++) {
+        p->fine = levels + i - 1;
+        p->coarse = levels + i;
+        if (sdv__run(&work, sdv__chunks(levels[i].height), sdv__pull_rows, p)) {
+            return 1;
+        }
+    }
+    top->weights[0] = top->weights[0] > 0.0f ? 1.0f : 0.0f;
+    for (i = count - 1; i-- > 0 && top->weights[0] > 0.0f;) {
+        p->fine = levels + i;
+        p->coarse = levels + i + 1;
+        if (sdv__run(&work, sdv__chunks(levels[i].height), sdv__push_rows, p)) {
+            return 1;
+        }
+    }
+    return 0;
+}
+
+SDV_API lao_result sdv_pull_push(const sdv_host *host, const sdv_pull_push_desc *desc,
+                                 uint32_t *empty) {
+    lao_allocator a = sdv__allocator(host);
+    sdv__level levels[SDV__LEVELS];
+    sdv__pull p;
+    uint64_t texels = 0;
+    uint32_t i, count = 1;
+    float *memory, *at;
+    int cancelled;
+    if (!desc || !desc->values || !desc->weights) {
+        return sdv__fail(host, SDV_LOG_NULL_ARGUMENT, "sdv_pull_push");
+    }
+    if (desc->width < 1 || desc->height < 1 || desc->width > 32768 || desc->height > 32768 ||
+        desc->channels < 1 || desc->channels > 64) {
+        return sdv__fail(host, SDV_LOG_IMAGE_SIZE, "%u x %u, %u channels", desc->width,
+                         desc->height, desc->channels);
+    }
+    levels[0].width = desc->width;
+    levels[0].height = desc->height;
+    levels[0].values = desc->values;
+    levels[0].weights = desc->weights;
+    for (; levels[count - 1].width > 1 || levels[count - 1].height > 1; count++) {
+        levels[count].width = (levels[count - 1].width + 1) / 2;
+        levels[count].height = (levels[count - 1].height + 1) / 2;
+        texels += (uint64_t)levels[count].width * levels[count].height;
+    }
+    memory = (float *)sdv__take(&a, texels * (desc->channels + 1), sizeof *memory);
+    if (!memory) {
+        return sdv__fail(host, SDV_LOG_MEMORY, "the pyramid of a %u x %u image", desc->width,
+                         desc->height);
+    }
+    for (i = 1, at = memory; i < count; i++) {
+        size_t n = (size_t)levels[i].width * levels[i].height;
+        levels[i].values = at;
+        levels[i].weights = at + n * desc->channels;
+        at += n * (desc->channels + 1);
+    }
+    p.desc = desc;
+    p.exponent = desc->exponent ? (lao_int)desc->exponent : 1;
+    p.exponent = p.exponent < 1023 ? p.exponent : 1023;
+    sdv__pull_clean(levels, desc->channels);
+    cancelled = sdv__pull_run(host, levels, count, &p);
+    if (empty && !cancelled) {
+        *empty = !(levels[count - 1].weights[0] > 0.0f);
+    }
+    sdv__give(&a, memory);
+    return cancelled ? sdv__fail(host, SDV_LOG_CANCELLED, "filling an image") : LAO_OK;
 }
 
 #ifdef __cplusplus
