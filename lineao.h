@@ -1513,6 +1513,21 @@ LAO_FN lao_v2 lao_pixel_slope(lao_v4 ray, float px, float py) {
     LAO_EXACT float y = ray.y * py + ray.w;
     return lao_v2_make(x, y);
 }
+/* The view ray through a pixel centre in the world, from the eye (orthographic: from the eye's
+   plane): a point and a unit vector. */
+LAO_FN lao_v3 lao_ray_origin(lao_m4 world, lao_v2 slope, float orthographic) {
+    if (orthographic > 0.5f) {
+        return lao_transform(world, lao_v3_make(slope.x, slope.y, 0.0f));
+    }
+    return lao_v3_make(world.w.x, world.w.y, world.w.z);
+}
+LAO_FN lao_v3 lao_ray_direction(lao_m4 world, lao_v2 slope, float orthographic) {
+    lao_v2 s = orthographic > 0.5f ? lao_v2_make(0.0f, 0.0f) : slope;
+    LAO_EXACT float x = world.x.x * s.x + world.y.x * s.y - world.z.x;
+    LAO_EXACT float y = world.x.y * s.x + world.y.y * s.y - world.z.y;
+    LAO_EXACT float z = world.x.z * s.x + world.y.z * s.y - world.z.z;
+    return lao_v3_unit(lao_v3_make(x, y, z), lao_v3_make(0.0f, 0.0f, -1.0f));
+}
 /* Unit vector from the surface at that pixel towards the eye: the direction of the head light. */
 LAO_FN lao_v3 lao_towards_eye(lao_v2 slope, float orthographic) {
     if (orthographic > 0.5f) {

@@ -339,11 +339,15 @@ SDV_API float sdv_grid_distance(const sdv_grid *grid, lao_v3 p, uint32_t *cone);
 /* The same by going through all cones: the oracle. */
 SDV_API float sdv_cones_distance(const lao_v4 *cones, uint32_t count, lao_v3 p, uint32_t *cone);
 
-enum { SDV_TRACE_NEAREST = 1 /* also d_min and t_min */ };
+enum {
+    SDV_TRACE_NEAREST = 1, /* also d_min and t_min */
+    SDV_TRACE_CLOSE = 2    /* the same where d_min is below `reach`, in a fraction of the time */
+};
 
 typedef struct sdv_ray {
     lao_v3 origin, direction; /* mm; unit */
     uint32_t flags;           /* SDV_TRACE_... */
+    float reach;              /* mm, of SDV_TRACE_CLOSE */
 } sdv_ray;
 
 typedef struct sdv_hit {
@@ -432,6 +436,67 @@ typedef struct sdv_pull_push_desc {
 SDV_API lao_result sdv_pull_push(const sdv_host *host, const sdv_pull_push_desc *desc,
                                  uint32_t *empty);
 
+/* ------------------------------------------------------------------------------------------------
+ * drawing: a module for lao_desc.modules, whose object is a grid */
+
+/* X(name, TYPE, minimum, maximum, default, structural, unit, choices, help), as LAO_SETTINGS. */
+#define SDV_SETTINGS(X)                                                                            \
+    X(near_miss, ENUM, 0, 2, 0, 1, "", "close|exact|none",                                         \
+      "keep how near rays came to other vessels: silhouettes, contours, depth shadows")            \
+    X(silhouette, FLOAT, 0, 1000, 0.5f, 0, "mm", "", "width of the outline around vessels")        \
+    X(contour, FLOAT, 0, 1000, 0.25f, 0, "mm", "", "width of outlines in front of other vessels")  \
+    X(shadow_ratio, FLOAT, 0, 10, 0.15f, 0, "", "",                                                \
+      "width of a depth shadow per distance behind the edge (m of L19 Fig. 8)")                    \
+    X(shadow_width, FLOAT, 0, 100, 2, 0, "%", "",                                                  \
+      "widest depth shadow, of the scene's diameter (a of L19 Fig. 8)")                            \
+    X(shadow_strength, FLOAT, 0, 1, 0.6f, 0, "", "", "light that a depth shadow takes away")       \
+    X(field_occlusion, BOOL, 0, 1, 1, 1, "", "", "ambient occlusion from the distance field")      \
+    X(occlusion_reach, FLOAT, 0.01f, 100, 4, 0, "%", "",                                           \
+      "how far field occlusion looks, of the scene's diameter")                                    \
+    X(occlusion_strength, FLOAT, 0, 5, 1, 0, "", "", "light that field occlusion takes away")      \
+    X(surface_ambient, FLOAT, 0, 1, 0.25f, 0, "", "", "ambient part of a surface's illumination")  \
+    X(surface_diffuse, FLOAT, 0, 2, 0.7f, 0, "", "", "diffuse part of a surface's illumination")   \
+    X(surface_specular, FLOAT, 0, 2, 0.2f, 0, "", "", "specular part of a surface's illumination") \
+    X(surface_shininess, INT, 1, 1000, 40, 1, "", "", "Phong exponent of a surface")
+
+/* What a vessel tree looks like; as lao_settings: zero is the default unless its bit is set. */
+typedef struct sdv_settings {
+    uint64_t set;
+#define SDV__FIELD(name, type, minimum, maximum, standard, structural, unit, choices, help)        \
+    float name;
+    SDV_SETTINGS(SDV__FIELD)
+#undef SDV__FIELD
+} sdv_settings;
+
+typedef enum sdv_setting {
+#define SDV__ENUM(name, type, minimum, maximum, standard, structural, unit, choices, help)         \
+    SDV_SETTING_ID_##name,
+    SDV_SETTINGS(SDV__ENUM)
+#undef SDV__ENUM
+        SDV_SETTING_COUNT
+} sdv_setting;
+#define SDV_SET(name) ((uint64_t)1 << SDV_SETTING_ID_##name)
+
+/* Passes, images and settings that draw trees among a scene's lines. Static. Thread: any. */
+SDV_API const lao_module *sdv_module(void);
+
+/* A grid as the object of a set. `desc` refers to the struct itself and to the grid's arrays: it
+   must not move, and both must live until lao_object_create or _update returns. */
+typedef struct sdv_object {
+    lao_object_desc desc;
+    lao_object_buffer buffers[5];
+    lao_v4 box[2];
+    uint8_t *colors; /* private */
+    lao_allocator allocator;
+} sdv_object;
+
+/* Describes a grid for lao_object_create. `colors`: (Optional) 8 bytes a cone: RGBA at its first
+   and at its second end, display values; NULL: all alike. Free with sdv_object_free. Fails with
+   NULL_ARGUMENT, MEMORY. */
+SDV_API lao_result sdv_object_make(const sdv_host *host, const sdv_grid *grid,
+                                   const uint8_t *colors, sdv_object *object);
+SDV_API void sdv_object_free(sdv_object *object);
+
 #ifdef __cplusplus
 }
 #endif
@@ -449,7 +514,7 @@ struct sdv_cone_point {
     float s, l, d;  /* between: length of the axis, of the tangent; radius of a less that of b */
     lao_v3 axis;    /* between: unit, from a to b */
     lao_v3 away;    /* from the axis or the ball's centre to the point, not unit */
-    float length;   /* of away */
+    float radial;   /* length of away */
 };
 #ifndef LAO_GLSL
 typedef struct sdv_cone_point sdv_cone_point;
@@ -458,7 +523,7 @@ LAO_FN sdv_cone_point sdv_cone_point_ball(sdv_cone_point c, lao_v3 p, lao_v4 bal
     sdv_cone_point r = c;
     r.away = lao_v3_sub(p, lao_v3_make(ball.x, ball.y, ball.z));
     LAO_EXACT float length = lao_sqrt(lao_v3_dot(r.away, r.away));
-    r.length = length;
+    r.radial = length;
     r.distance = length - ball.w;
     r.part = part;
     return r;
@@ -501,7 +566,7 @@ LAO_FN sdv_cone_point sdv_cone_point_make(lao_v3 p, lao_v4 a, lao_v4 b) {
     c.x = x;
     c.y = y;
     c.l = l;
-    c.length = y;
+    c.radial = y;
     return c;
 }
 /* Signed distance in mm, exact outside and inside; one ball when it holds the other (Eqs. 1-3,
@@ -537,7 +602,7 @@ LAO_FN lao_v3 sdv_round_cone_gradient(lao_v3 p, lao_v4 a, lao_v4 b) {
 }
 /* Slope of the distance along a unit direction: gradient times direction. */
 LAO_FN float sdv_cone_slope(sdv_cone_point c, lao_v3 direction) {
-    LAO_EXACT float away = lao_v3_dot(c.away, direction) / lao_max(c.length, 1.0e-30f);
+    LAO_EXACT float away = lao_v3_dot(c.away, direction) / lao_max(c.radial, 1.0e-30f);
     if (c.part != 0.0f) {
         return away;
     }
@@ -838,6 +903,21 @@ LAO_FN sdv_march sdv_march_step(sdv_march m, sdv_near n, bool occupied, float fa
     }
     return r;
 }
+/* Whether a place in a cell may be nearer to the tree than `reach`, by the cell's distance: that is
+   up to 1.74 cells too great, and the place up to 0.87 cells from the centre. */
+LAO_FN bool sdv_is_close(float distance, float cell, float reach) {
+    LAO_EXACT float least = distance - 2.625f * cell;
+    return least < reach;
+}
+/* The box with a rim of `by` mm. What lies in it is no farther from any place outside than from
+   that place's nearest one inside, so cells serve out there as well. */
+LAO_FN sdv_box sdv_box_grown(sdv_box box, float by) {
+    sdv_box r = box;
+    LAO_EXACT float cells = 2.0f * by / box.cell;
+    r.origin = lao_v3_make(box.origin.x - by, box.origin.y - by, box.origin.z - by);
+    r.size = lao_v3_make(box.size.x + cells, box.size.y + cells, box.size.z + cells);
+    return r;
+}
 #define SDV_POLISH_ROUNDS 2
 /* Newton's step from a point close to the surface onto it: where the field's tangent is 0. */
 LAO_FN float sdv_polish(float t, float distance, lao_v3 gradient, lao_v3 direction, float cell) {
@@ -1123,6 +1203,46 @@ LAO_FN float sdv_push_weight(sdv_mix parents, float own) {
     }
     LAO_EXACT float w = (1.0f - own) * (parents.weight / parents.share) + own;
     return w;
+}
+
+/* ---- shading */
+#define SDV_NEAR_MISS_CLOSE 0
+#define SDV_NEAR_MISS_EXACT 1
+#define SDV_NEAR_MISS_NONE 2
+/* How near to a vessel a ray must pass for anything to be drawn of it, mm. `shadow`: % of the
+   diameter. */
+LAO_FN float sdv_near_miss_reach(float silhouette, float contour, float shadow, float diameter) {
+    LAO_EXACT float widest = 0.01f * shadow * diameter;
+    return lao_max(lao_max(silhouette, contour), widest);
+}
+/* Between the colours of a cone's ends, by the place along its axis. */
+LAO_FN lao_v3 sdv_cone_color(lao_v3 p, lao_v4 a, lao_v4 b, lao_v3 color_a, lao_v3 color_b) {
+    lao_v3 axis = lao_v3_make(b.x - a.x, b.y - a.y, b.z - a.z);
+    lao_v3 q = lao_v3_make(p.x - a.x, p.y - a.y, p.z - a.z);
+    LAO_EXACT float along = lao_v3_dot(q, axis) / lao_max(lao_v3_dot(axis, axis), 1.0e-30f);
+    LAO_EXACT float t = lao_clamp01(along);
+    LAO_EXACT float x = color_a.x + t * (color_b.x - color_a.x);
+    LAO_EXACT float y = color_a.y + t * (color_b.y - color_a.y);
+    LAO_EXACT float z = color_a.z + t * (color_b.z - color_a.z);
+    return lao_v3_make(x, y, z);
+}
+/* Light after something dark, 0 .. 1, of that strength. */
+LAO_FN float sdv_dimmed(float light, float dark, float strength) {
+    LAO_EXACT float r = light * lao_clamp01(1.0f - strength * dark);
+    return r;
+}
+/* Phong with a head light; n and l (towards the light) are unit. `light`: what reaches the place of
+   all of it. */
+LAO_FN lao_v3 sdv_shade(lao_v3 color, lao_v3 n, lao_v3 l, float ambient, float diffuse,
+                        float specular, lao_int exponent, float light) {
+    LAO_EXACT float nl = lao_max(lao_v3_dot(n, l), 0.0f);
+    LAO_EXACT float rl = lao_max(2.0f * nl * nl - 1.0f, 0.0f);
+    LAO_EXACT float body = (ambient + diffuse * nl) * light;
+    LAO_EXACT float shine = specular * lao_power(rl, exponent) * light;
+    LAO_EXACT float x = color.x * body + shine;
+    LAO_EXACT float y = color.y * body + shine;
+    LAO_EXACT float z = color.z * body + shine;
+    return lao_v3_make(lao_clamp01(x), lao_clamp01(y), lao_clamp01(z));
 }
 /* SDV_SHARED_END */
 
@@ -3368,25 +3488,32 @@ static void sdv__land(const sdv_grid *g, const sdv_ray *ray, const sdv_march *m,
 
 SDV_API void sdv_trace(const sdv_grid *grid, const sdv_ray *ray, sdv_hit *hit) {
     sdv_box box = sdv__grid_box(grid);
-    lao_v2 span = sdv_ray_box(ray->origin, ray->direction, box);
+    int exact = (ray->flags & SDV_TRACE_NEAREST) != 0, i;
+    int close = !exact && (ray->flags & SDV_TRACE_CLOSE);
+    lao_v2 span =
+        sdv_ray_box(ray->origin, ray->direction, close ? sdv_box_grown(box, ray->reach) : box);
     sdv_march m = sdv_march_start(span);
-    int nearest = (ray->flags & SDV_TRACE_NEAREST) != 0, i;
     for (i = 0; i < SDV_MAX_STEPS && m.state == SDV_MARCH_GOES; i++) {
         lao_v3 p = lao_v3_along(ray->origin, ray->direction, m.t);
         const lao_v4 *cell = sdv__cell_at(grid, p);
         bool occupied = cell->w > 0.0f;
         sdv_near n = sdv_near_start(0.0f);
-        if (occupied || nearest) {
+        if (occupied || exact || (close && sdv_is_close(cell->x, grid->cell, ray->reach))) {
             n = sdv__near_at(grid, cell, p, ray->direction);
         }
-        if (nearest) {
+        if (exact) {
             m = sdv__note(grid, ray, m, n);
-            m = sdv_march_passed(m, n) ? sdv__minimum(grid, ray, m, m.cone, m.older, m.t) : m;
+        }
+        if ((exact || close) && sdv_march_passed(m, n)) {
+            m = sdv__minimum(grid, ray, m, m.cone, m.older, m.t);
         }
         m = sdv_march_step(m, n, occupied, cell->z, grid->cell);
     }
-    if (nearest && m.state != SDV_MARCH_HITS) {
+    if (exact && m.state != SDV_MARCH_HITS) {
         m = sdv__least(grid, ray, m);
+    }
+    if (close && m.state != SDV_MARCH_HITS && m.falling > 0.5f && m.inside < 0.5f) {
+        m = sdv__minimum(grid, ray, m, m.cone, m.older, SDV_FAR);
     }
     memset(hit, 0, sizeof *hit);
     hit->cone = SDV_NONE;
@@ -3962,6 +4089,116 @@ SDV_API lao_result sdv_pull_push(const sdv_host *host, const sdv_pull_push_desc 
     }
     sdv__give(&a, memory);
     return cancelled ? sdv__fail(host, SDV_LOG_CANCELLED, "filling an image") : LAO_OK;
+}
+
+/* ================================================================================================
+ * the module */
+// clang-format off
+#define SDV__WRITE(image) {image, LAO_LEVEL_SAME, 0, LAO_PHASE_THIS, LAO_LOAD_DISCARD}
+#define SDV__READ(image) {image, LAO_LEVEL_SAME, 0, LAO_PHASE_THIS, LAO_LOAD_DISCARD}
+#define SDV__KEEP(image) {image, LAO_LEVEL_SAME, 0, LAO_PHASE_THIS, LAO_LOAD_KEEP}
+#define SDV__WITH_TREE {{"#vessel_cells", '>', 0}}
+
+static const lao_buffer_row sdv__buffers[] = {
+    {"vessel_box", LAO_FORMAT_RGBA32F}, {"vessel_cells", LAO_FORMAT_RGBA32F}, {"vessel_ids", LAO_FORMAT_R32F},
+    {"vessel_cones", LAO_FORMAT_RGBA32F}, {"vessel_colors", LAO_FORMAT_RGBA8}
+};
+
+static const lao_image_row sdv__images[] = {
+    {"vessel_position", LAO_FORMAT_RGBA32F, LAO_SIZE_FULL, 0, 0, NULL, 0, LAO_ENCODING_PLAIN, {0, 0, 0, -1}, {NULL, 0, 0}, {"position.X", "position.Y", "position.Z", "segment.V"}},
+    {"vessel_normal",   LAO_FORMAT_RGBA32F, LAO_SIZE_FULL, 0, 0, NULL, 0, LAO_ENCODING_PLAIN, {0, 0, 0, 0},  {NULL, 0, 0}, {"normal.X", "normal.Y", "normal.Z", "dmin.V"}},
+    {"vessel_ray",      LAO_FORMAT_RGBA32F, LAO_SIZE_FULL, 0, 0, NULL, 0, LAO_ENCODING_PLAIN, {0, 0, 0, 0},  {NULL, 0, 0}, {NULL, NULL, NULL, NULL}}
+};
+
+static const lao_pass_row sdv__passes[] = {
+    {"vessel_trace", LAO_PASS_FULLSCREEN, "vessel_trace", 0, LAO_STAGE_DRAW, LAO_SCOPE_PER_SET, LAO_REPEAT_NONE, NULL, LAO_BLEND_NONE, LAO_DEPTH_NONE, LAO_CULL_NONE, SDV__WITH_TREE,
+     {SDV__WRITE("vessel_position"), SDV__WRITE("vessel_normal"), SDV__WRITE("vessel_ray")},
+     {SDV__READ("#vessel_box"), SDV__READ("#vessel_cells"), SDV__READ("#vessel_ids"), SDV__READ("#vessel_cones")}},
+    {"vessel_shade", LAO_PASS_FULLSCREEN, "vessel_shade", 0, LAO_STAGE_SHADE, LAO_SCOPE_PER_SET, LAO_REPEAT_NONE, NULL, LAO_BLEND_NONE, LAO_DEPTH_NEARER, LAO_CULL_NONE, SDV__WITH_TREE,
+     {SDV__KEEP("shaded"), SDV__KEEP("zbuffer")},
+     {SDV__READ("vessel_position"), SDV__READ("vessel_normal"), SDV__READ("vessel_ray"), SDV__READ("#vessel_colors"),
+      SDV__READ("#vessel_box"), SDV__READ("#vessel_cells"), SDV__READ("#vessel_ids"), SDV__READ("#vessel_cones")}}
+};
+
+static const lao_setting_row sdv__settings[] = {
+#define SDV__ROW(name, type, minimum, maximum, standard, structural, unit, choices, help) \
+    {#name, LAO_SETTING_##type, minimum, maximum, standard, structural, unit, choices, help},
+    SDV_SETTINGS(SDV__ROW)
+#undef SDV__ROW
+};
+
+static const lao_module sdv__module = {
+    "vessel",
+    sdv__passes, (uint32_t)(sizeof sdv__passes / sizeof sdv__passes[0]),
+    sdv__images, (uint32_t)(sizeof sdv__images / sizeof sdv__images[0]),
+    sdv__settings, (uint32_t)(sizeof sdv__settings / sizeof sdv__settings[0]),
+    NULL, 0, NULL, 0,
+    sdv__buffers, (uint32_t)(sizeof sdv__buffers / sizeof sdv__buffers[0])
+};
+// clang-format on
+
+SDV_API const lao_module *sdv_module(void) {
+    return &sdv__module;
+}
+
+static void sdv__object_buffer(sdv_object *object, uint32_t index, const void *data,
+                               uint32_t count) {
+    object->buffers[index].name = sdv__buffers[index].name;
+    object->buffers[index].data = data;
+    object->buffers[index].texel_count = count;
+}
+
+SDV_API lao_result sdv_object_make(const sdv_host *host, const sdv_grid *grid,
+                                   const uint8_t *colors, sdv_object *object) {
+    static const uint8_t coral[4] = {226, 106, 92, 255};
+    lao_allocator allocator = sdv__allocator(host);
+    uint8_t *own = NULL;
+    size_t i, size = 8 * (size_t)(grid ? grid->cone_count : 0);
+    int k;
+    if (!grid || !object || !grid->cells || !grid->cone_count) {
+        return sdv__fail(host, SDV_LOG_NULL_ARGUMENT, "sdv_object_make");
+    }
+    if (!colors) {
+        own = (uint8_t *)allocator.allocate(allocator.user, size);
+        if (!own) {
+            return sdv__fail(host, SDV_LOG_MEMORY, "colours of cones");
+        }
+        for (i = 0; i < size; i++) {
+            own[i] = coral[i % 4];
+        }
+    }
+    memset(object, 0, sizeof *object);
+    object->allocator = allocator;
+    object->colors = own;
+    object->box[0] = lao_v4_make(grid->origin.x, grid->origin.y, grid->origin.z, grid->cell);
+    object->box[1] = lao_v4_make((float)grid->size[0], (float)grid->size[1], (float)grid->size[2],
+                                 (float)grid->cone_count);
+    sdv__object_buffer(object, 0, object->box, 2);
+    sdv__object_buffer(object, 1, grid->cells, grid->cell_count);
+    sdv__object_buffer(object, 2, grid->ids, grid->id_count);
+    sdv__object_buffer(object, 3, grid->cones, 2 * grid->cone_count);
+    sdv__object_buffer(object, 4, own ? own : colors, 2 * grid->cone_count);
+    object->desc.buffers = object->buffers;
+    object->desc.buffer_count = 5;
+    object->desc.item_count = grid->cone_count;
+    for (i = 0; i < grid->cone_count * (size_t)2; i++) {
+        const lao_v4 *ball = &grid->cones[i];
+        const float centre[3] = {ball->x, ball->y, ball->z};
+        for (k = 0; k < 3; k++) {
+            float low = centre[k] - ball->w, high = centre[k] + ball->w;
+            object->desc.bounds[0][k] = i ? lao_min(object->desc.bounds[0][k], low) : low;
+            object->desc.bounds[1][k] = i ? lao_max(object->desc.bounds[1][k], high) : high;
+        }
+    }
+    return LAO_OK;
+}
+
+SDV_API void sdv_object_free(sdv_object *object) {
+    if (object && object->colors) {
+        object->allocator.release(object->allocator.user, object->colors,
+                                  4 * (size_t)object->buffers[4].texel_count);
+        object->colors = NULL;
+    }
 }
 
 #ifdef __cplusplus

@@ -47,7 +47,7 @@ static lao_v3 v3(double x, double y, double z) {
     return lao_v3_make((float)x, (float)y, (float)z);
 }
 static sdv_hit shoot(const scene *c, lao_v3 origin, lao_v3 direction) {
-    sdv_ray ray = {origin, lao_v3_unit(direction, direction), SDV_TRACE_NEAREST};
+    sdv_ray ray = {origin, lao_v3_unit(direction, direction), SDV_TRACE_NEAREST, 0};
     sdv_hit hit, plain;
     sdv_trace(&c->grid, &ray, &hit);
     ray.flags = 0; /* what is seen does not depend on d_min being asked for */
@@ -209,7 +209,7 @@ static void random_rays(void **state) {
         for (int k = 0; k < RAYS; k++) {
             lao_v3 o, v = v3(0, 0, 1);
             aim(&seed, 100, &o, &v);
-            sdv_ray ray = {o, v, SDV_TRACE_NEAREST};
+            sdv_ray ray = {o, v, SDV_TRACE_NEAREST, 0};
             sdv_hit hit;
             sdv_trace(&c.grid, &ray, &hit);
             truth t = brute(&c.grid, o, v, 400);
@@ -277,7 +277,7 @@ static void no_vessel_is_too_thin(void **state) {
                       (double)(a->z + t * (b->z - a->z)));
         aim(&seed, 30, &o,
             &v); /* from nearer by, so that float rays do not miss it by themselves */
-        sdv_ray ray = {o, lao_v3_unit(lao_v3_sub(p, o), v), 0};
+        sdv_ray ray = {o, lao_v3_unit(lao_v3_sub(p, o), v), 0, 0};
         sdv_hit hit;
         sdv_trace(&c.grid, &ray, &hit);
         assert_true(hit.cone != SDV_NONE);
@@ -339,7 +339,8 @@ static void odd_rays_end(void **state) {
     for (int i = 0; i < 7 * 7 * 7; i++) {
         for (int k = 0; k < 7; k++) {
             sdv_ray ray = {v3(values[k], 3, -60),
-                           v3(values[i % 7], values[i / 7 % 7], values[i / 49]), SDV_TRACE_NEAREST};
+                           v3(values[i % 7], values[i / 7 % 7], values[i / 49]), SDV_TRACE_NEAREST,
+                           0};
             sdv_hit hit;
             sdv_trace(&c.grid, &ray, &hit);
             assert_true(hit.cone == SDV_NONE || hit.cone < c.grid.cone_count);
