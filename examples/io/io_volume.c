@@ -30,6 +30,7 @@ typedef struct gather { /* one read */
     const io_field *(*velocity)[3]; /* of each grid: the fields of x y z ... */
     uint32_t (*component)[3];       /* ... and the component of each */
     bool joined;                    /* three files, one component each: velocity[0] has all */
+    bool building;                  /* all files are open */
     bool as_frames;                 /* the components are the frames of one array */
     char *names[NAMES];
     uint32_t name_count;
@@ -553,6 +554,7 @@ static bool copy_names(gather *g, io_volume *out) {
 
 static bool build(gather *g, io_volume *out) {
     g->at = 0;
+    g->building = true;
     out->format = g->grids[0].format;
     if (!split_names(g) || !find_velocities(g))
         return false;
@@ -567,8 +569,8 @@ static bool build(gather *g, io_volume *out) {
 /* Progress of one file as a part of all. */
 static bool on_progress(void *user, uint64_t done, uint64_t total) {
     const gather *g = user;
-    uint64_t at = g->at < g->count ? g->at : g->count;
-    return g->options->progress(g->options->user, at * total + done, (g->count + 1) * total);
+    uint64_t files = (uint64_t)g->count + 1, at = g->building ? files + g->at : g->at;
+    return g->options->progress(g->options->user, at * total + done, 2 * files * total);
 }
 
 static const format *find_format(const io_cursor *bytes) {

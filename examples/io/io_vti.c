@@ -93,6 +93,7 @@ static bool load_xml(io_reader *r, io_grid *grid, io_field *field) {
     io_xml *x = grid->file;
     const io_xml_array *like = &x->arrays[field->place];
     bool cells = like->section == IO_XML_CELL_DATA;
+    size_t voxels = io_grid_voxels(grid), covered = 0;
     uint8_t *whole = NULL;
     for (size_t i = 0; i < x->piece_count; i++) {
         const io_xml_piece *piece = &x->pieces[i];
@@ -109,15 +110,17 @@ static bool load_xml(io_reader *r, io_grid *grid, io_field *field) {
         field->type = view.type; /* text becomes doubles */
         field->big = view.big;
         field->bytes = view.bytes;
-        if (x->piece_count == 1)
+        covered += view.count;
+        if (view.count == voxels)
             break;
-        if (!whole && !(whole = io_alloc(r, io_grid_voxels(grid), view.stride)))
+        if (!whole && !(whole = io_alloc(r, voxels, view.stride)))
             return false;
         place_piece(&view, first, size, grid, whole);
         field->bytes = whole;
     }
     io_field_packed(field, grid);
-    return true;
+    return covered >= voxels ||
+           io_fail(r, "has %zu voxels in its Pieces, but %zu in its WholeExtent", covered, voxels);
 }
 
 static size_t count_arrays(const io_xml *x, io_xml_section in) {
