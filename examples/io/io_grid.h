@@ -18,7 +18,7 @@ typedef struct io_field {
     const uint8_t *bytes; /* NULL = not loaded */
     size_t stride[5];
     double slope, intercept;
-    size_t place; /* of the format's reader: where it finds the array */
+    const void *place; /* of the format's reader: where it finds the array */
 } io_field;
 
 typedef struct io_grid io_grid;
@@ -35,7 +35,6 @@ struct io_grid {
     bool (*load)(io_reader *reader, io_grid *grid, io_field *field);
     void (*close)(io_grid *grid); /* NULL = nothing to close */
     void *file;                   /* of the format's reader */
-    int64_t handle;               /* the same */
 };
 
 /* A new field, zero but for its name and one component, frame and slope; NULL when memory is short.

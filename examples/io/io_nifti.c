@@ -32,6 +32,7 @@ io_match io_sniff_nifti(const io_cursor *bytes) {
 /* What is checked before libnifti sees the header: it repairs silently. */
 typedef struct head {
     bool big, wide; /* wide: NIfTI-2 */
+    int code;       /* of the type of values */
     int64_t dim[8]; /* dim[0]: how many count */
     double pixdim[4], offset;
 } head;
@@ -40,6 +41,20 @@ static double head_real(const io_cursor *c, const head *h, size_t at, size_t wid
     io_view view = {c->bytes + (h->wide ? wide_at : at), 1,     0, 1,
                     h->wide ? IO_F64 : IO_F32,           h->big};
     return io_view_real(&view, 0, 0);
+}
+
+static io_type type_of(int code) {
+    // clang-format off
+    static const struct { int code; io_type type; } types[] = {
+        {DT_UINT8, IO_U8}, {DT_INT8, IO_I8}, {DT_INT16, IO_I16}, {DT_UINT16, IO_U16},
+        {DT_INT32, IO_I32}, {DT_UINT32, IO_U32}, {DT_INT64, IO_I64}, {DT_UINT64, IO_U64},
+        {DT_FLOAT32, IO_F32}, {DT_FLOAT64, IO_F64},
+    };
+    // clang-format on
+    for (size_t i = 0; i < sizeof types / sizeof types[0]; i++)
+        if (types[i].code == code)
+            return types[i].type;
+    return IO_NONE;
 }
 
 static bool read_head(io_reader *r, const io_cursor *c, head *h) {
@@ -63,6 +78,10 @@ static bool read_head(io_reader *r, const io_cursor *c, head *h) {
     h->offset = h->wide ? io_view_real(&wide, 0, 0) : head_real(c, h, 108, 0);
     if (c->bytes[h->wide ? 5 : 345] == 'i')
         return io_fail(r, "is the header of a pair; join it with its .img into one .nii file");
+    h->code = io_u16(c->bytes + (h->wide ? 12 : 70), h->big);
+    if (type_of(h->code) == IO_NONE)
+        return io_fail(r, "has values of type %d (%s); whole and floating numbers are read",
+                       h->code, nifti_datatype_string(h->code));
     if (h->dim[0] < 3 || h->dim[0] > 7)
         return io_fail(r, "has %d axes; a volume has 3 (x y z) to 5 (x y z, time, component)",
                        (int)h->dim[0]);
@@ -76,20 +95,6 @@ static bool read_head(io_reader *r, const io_cursor *c, head *h) {
         return io_fail(r, "has its values at byte %g of %zu; copy the file again", h->offset,
                        c->size);
     return true;
-}
-
-static io_type type_of(int code) {
-    // clang-format off
-    static const struct { int code; io_type type; } types[] = {
-        {DT_UINT8, IO_U8}, {DT_INT8, IO_I8}, {DT_INT16, IO_I16}, {DT_UINT16, IO_U16},
-        {DT_INT32, IO_I32}, {DT_UINT32, IO_U32}, {DT_INT64, IO_I64}, {DT_UINT64, IO_U64},
-        {DT_FLOAT32, IO_F32}, {DT_FLOAT64, IO_F64},
-    };
-    // clang-format on
-    for (size_t i = 0; i < sizeof types / sizeof types[0]; i++)
-        if (types[i].code == code)
-            return types[i].type;
-    return IO_NONE;
 }
 
 /* ---- Orientation ----------------------------------------------------------------------------- */
@@ -168,10 +173,7 @@ static bool add_values(io_reader *r, const io_cursor *c, const head *h, const ni
     io_field *field = io_add_field(r, grid, io_text_of(components == 3 ? "velocity" : "values"));
     if (!field)
         return false;
-    field->type = type_of(image->datatype);
-    if (field->type == IO_NONE)
-        return io_fail(r, "has values of type %d (%s); whole and floating numbers are read",
-                       image->datatype, nifti_datatype_string(image->datatype));
+    field->type = type_of(h->code);
     size_t size = io_type_size(field->type), offset = (size_t)h->offset;
     size_t planes = (c->size - offset) / (io_grid_voxels(grid) * size);
     if (components > planes || frames > planes / components)

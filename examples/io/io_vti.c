@@ -91,7 +91,7 @@ static void place_piece(const io_view *view, const size_t first[3], const size_t
 
 static bool load_xml(io_reader *r, io_grid *grid, io_field *field) {
     io_xml *x = grid->file;
-    const io_xml_array *like = &x->arrays[field->place];
+    const io_xml_array *like = field->place;
     bool cells = like->section == IO_XML_CELL_DATA;
     size_t voxels = io_grid_voxels(grid), covered = 0;
     uint8_t *whole = NULL;
@@ -150,7 +150,7 @@ bool io_open_vti(io_reader *r, io_cursor *bytes, io_grid *grid) {
         if (!field)
             return false;
         field->components = (uint32_t)x->arrays[i].components;
-        field->place = i;
+        field->place = &x->arrays[i];
     }
     return true;
 }
