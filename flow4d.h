@@ -284,12 +284,9 @@ FLOW4D_API lao_result flow4d_project_maximum(const flow4d_host *host, const flow
                                              const lao_camera *camera, uint32_t width,
                                              uint32_t height, float *image);
 
-/* All zero, or NULL instead: the surface of a mask. */
+/* All zero, or NULL instead: values of at least iso are inside, nothing is smoothed. */
 typedef struct flow4d_surface_settings {
-    double iso;         /* the surface's value; 0: 0.5, unless iso_is_zero */
-    int iso_is_zero;    /* not 0: the surface is at 0, whatever `iso` says */
-    int inside_is_less; /* not 0: values below iso are inside (a signed distance); else values of at
-                           least iso are */
+    int inside_is_less; /* not 0: values below iso are inside (a signed distance) */
     uint32_t smoothing; /* passes of the 1-2-1 filter along each axis before, 0 to 100; 1 rounds the
                            stairs of a mask */
 } flow4d_surface_settings;
@@ -303,12 +300,13 @@ typedef struct flow4d_surface {
     lao_allocator allocator; /* private */
 } flow4d_surface;
 
-/* Marching cubes (METHODS 11.5). Where the inside reaches the border of the volume the surface
+/* The surface where the volume has the value `iso` (0.5 for a mask), by marching cubes
+   (METHODS 11.5). Where the inside reaches the border of the volume the surface
    closes half a voxel beyond it. Corners that meet only across a face's diagonal are kept apart.
    An empty inside gives no triangles and is no failure.
    Fails with NULL_ARGUMENT, SIZE, AFFINE, ISO, SETTING, COUNT, MEMORY, CANCELLED. */
 FLOW4D_API lao_result flow4d_surface_make(const flow4d_host *host, const flow4d_volume *volume,
-                                          const flow4d_surface_settings *settings,
+                                          double iso, const flow4d_surface_settings *settings,
                                           flow4d_surface *surface);
 FLOW4D_API void flow4d_surface_free(flow4d_surface *surface);
 
