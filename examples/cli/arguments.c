@@ -45,7 +45,7 @@ typedef struct flag_row {
 static const flag_row flags[] = {
     {"--out", "-o", "FILE.png", FLAG_TEXT, BOTH, ALL(out), NULL, "the picture; with --frames a pattern (out_%04d.png, first = 0)"},
     {"--out", "-o", "FILE", FLAG_TEXT, CLI_FLOW, ALL(out), NULL, "the lines: .vtp (with time and speed), .trk (the same) or .tck (positions alone)"},
-    {"--seeds", NULL, "N", FLAG_COUNT, TRACE, ALL(flow.seeds), NULL, "lines, each from a random place inside and a random time (30000)"},
+    {"--seeds", NULL, "N", FLAG_COUNT, TRACE, ALL(flow.seeds), NULL, "lines, each from a random place inside and a random time (one per 4 mm^3, 1000 to 30000)"},
     {"--seed", NULL, "N", FLAG_COUNT, TRACE, ALL(flow.seed), NULL, "of the random numbers; the same gives the same lines"},
     {"--mask", NULL, "FILE|NAME", FLAG_TEXT, ANY, ALL(flow.mask), NULL, "where the vessel is: a volume of the same size, or an array of the FILE (>= 0.5 is inside)"},
     {"--threshold", NULL, "M/S", FLAG_LENGTH, TRACE, ALL(flow.threshold), NULL, "inside is where the speed reaches this at some time (without a mask: a tenth of the highest)"},
@@ -81,8 +81,8 @@ static const flag_row flags[] = {
     {"--color", NULL, "#rrggbb", FLAG_PAINT, BOTH, FILE_(color), NULL, "or r,g,b in 0..1, direction, line or the NAME of an attribute"},
     {"--colormap", NULL, "NAME", FLAG_CHOICE, BOTH, FILE_(colormap), "viridis|inferno|coolwarm|gray", "of attributes: viridis (default), inferno, coolwarm or gray"},
     {"--range", NULL, "A,B", FLAG_RANGE, BOTH, FILE_(range), NULL, "values at both ends of the colour map (those of the data)"},
-    {"--every", NULL, "N", FLAG_COUNT, BOTH, FILE_(every), NULL, "keep each N-th line"},
-    {"--min-length", NULL, "MM", FLAG_LENGTH, BOTH, FILE_(min_length), NULL, "drop shorter lines"},
+    {"--every", NULL, "N", FLAG_COUNT, TRACE, FILE_(every), NULL, "keep each N-th line"},
+    {"--min-length", NULL, "MM", FLAG_LENGTH, TRACE, FILE_(min_length), NULL, "drop shorter lines (files: none; of a volume: shorter than two voxels)"},
     {"--bundle", NULL, "NAME", FLAG_TEXT, BOTH, FILE_(bundle), NULL, "keep the lines of this group (TRX group, TT cluster)"},
     {"--set", NULL, "NAME=VALUE", FLAG_ASSIGN, BOTH, FILE_(settings), NULL, "a setting, as its own flag does"},
 };
@@ -431,6 +431,7 @@ bool cli_parse(cli_command_bit command, int argc, char **argv, cli_options *out)
     out->size[1] = command == CLI_COMPARE ? 480 : 960;
     out->all.colormap = "viridis";
     out->flow.threshold = -1;
+    out->all.min_length = -1;
     cli_parse_color("#f4f4f2", out->background);
     out->files = cli_new((size_t)argc + 1, sizeof *out->files);
     if (!out->files)

@@ -24,7 +24,7 @@ typedef struct cli_source {
     const char *colormap;
     double range[2]; /* of the attribute; equal: from the data */
     uint32_t every;
-    double min_length;
+    double min_length; /* mm; negative: none is given */
     const char *bundle;
 } cli_source;
 

@@ -21,7 +21,7 @@ bool cli_read_file(const cli_source *source, io_lines *out) {
     io_options options;
     memset(&options, 0, sizeof options);
     options.every = source->every;
-    options.min_length = (float)source->min_length;
+    options.min_length = (float)fmax(source->min_length, 0);
     options.bundle = source->bundle;
     options.progress = on_progress;
     options.user = &progress;
@@ -119,11 +119,11 @@ static void find_times(cli_set *set, cli_scene *out) {
 }
 
 static bool load_traced(const cli_options *options, const cli_source *first, uint32_t count,
-                        io_lines *lines) {
+                        const cli_source *last, io_lines *lines) {
     io_volume volume;
     if (!cli_read_volume(options, first, count, false, &volume))
         return false;
-    bool ok = cli_trace(options, first->path, &volume, lines);
+    bool ok = cli_trace(options, last, first->path, &volume, lines);
     io_volume_free(&volume);
     return ok && cli_go_on();
 }
@@ -138,7 +138,7 @@ static bool load_set(const cli_options *options, const cli_source *first, uint32
     set->name = first->path;
     set->settings = source->settings;
     out->count++; /* freed with the scene from here on */
-    bool ok = volumes        ? load_traced(options, first, volumes, &set->lines)
+    bool ok = volumes        ? load_traced(options, first, volumes, source, &set->lines)
               : source->path ? cli_read_file(source, &set->lines)
                              : load_embedded(options, set, out);
     if (!ok)

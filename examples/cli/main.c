@@ -63,7 +63,7 @@ static const command_row commands[] = {
      NULL},
     {"flow", CLI_FLOW, cli_flow, "VOLUME... -o lines.vtp [--json]",
      "trace pathlines through a velocity volume",
-     "  lineao flow aorta.h5 -o aorta.vtp                      30000 lines inside its mask\n"
+     "  lineao flow aorta.h5 -o aorta.vtp                      lines inside its mask\n"
      "  lineao flow 4d.nii.gz --mask vessel.nii.gz -o 4d.trk   the mask from a file of its own\n"
      "  lineao flow u.nii v.nii w.nii --unit cm/s -o uvw.tck   one file for each component\n"
      "  lineao flow t_*.vti --period 800 -o beat.vtp           one file for each time step\n"
