@@ -5,6 +5,7 @@
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/stat.h>
 #include <zlib.h>
 
 typedef struct format {
@@ -685,6 +686,9 @@ bool io_read_volume_memory(const io_source *sources, uint32_t count,
 
 bool io_is_volume(const char *path) {
     uint8_t head[8192];
+    struct stat info;
+    if (stat(path, &info) || !S_ISREG(info.st_mode))
+        return false; /* of a pipe nothing may be taken away */
     gzFile file = gzopen(path, "rb"); /* reads what is not compressed as it is */
     int size = file ? gzread(file, head, sizeof head) : 0;
     if (file)
