@@ -117,6 +117,7 @@ static bool settings_make(const bench_case *it, const char *preset, float width,
     memset(settings, 0, sizeof *settings);
     settings->width = width;
     settings->supersampling = (float)it->supersampling;
+    lao_setting_parse(module, lao_setting_find(module, "halo"), it->halo, settings);
     return lao_setting_parse(module, lao_setting_find(module, "preset"), preset, settings) == 0 ||
            bench_fail("--presets: there is no preset %s", preset);
 }
@@ -371,8 +372,7 @@ static void shot_tell(const side *s, uint32_t preset, uint32_t pixels, cJSON *ou
         cJSON_AddNumberToObject(row, "level", it->passes[i].level);
         add_series(row, NULL, &it->passes[i].time);
     }
-    add_number(out, "lines_over_floor",
-               quotient(lines_find(it), pass_find(it, "floor_lines")));
+    add_number(out, "lines_over_floor", quotient(lines_find(it), pass_find(it, "floor_lines")));
     add_number(out, "occlusion_over_floor", over(cost.covered, taps));
     add_number(out, "occlusion_over_fetches", over(cost.covered, fetches));
     add_number(out, "occlusion_pass_over_floor_pass",
