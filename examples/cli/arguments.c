@@ -62,6 +62,7 @@ static const flag_row flags[] = {
     {"--every", NULL, "N", FLAG_COUNT, BOTH, FILE_(every), NULL, "keep each N-th line"},
     {"--min-length", NULL, "MM", FLAG_LENGTH, BOTH, FILE_(min_length), NULL, "drop shorter lines"},
     {"--bundle", NULL, "NAME", FLAG_TEXT, BOTH, FILE_(bundle), NULL, "keep the lines of this group (TRX group, TT cluster)"},
+    {"--unit", NULL, "mm|cm|um|m", FLAG_CHOICE, CLI_INFO, FILE_(unit), "mm|cm|um|m", "of trees and meshes, whatever the file tells or seems to be in"},
     {"--set", NULL, "NAME=VALUE", FLAG_ASSIGN, BOTH, FILE_(settings), NULL, "a setting, as its own flag does"},
 };
 // clang-format on
@@ -430,7 +431,7 @@ static void print_settings(void) {
 void cli_print_flags(cli_command_bit command) {
     print_rows(command, false, "Flags");
     print_rows(command, true,
-               "Lines: before the first FILE for all FILEs, after a FILE for it alone");
+               "Of a FILE: before the first FILE for all FILEs, after a FILE for it alone");
     if (command & CLI_COMPARE || command & CLI_RENDER)
         print_settings();
 }

@@ -21,6 +21,7 @@ typedef struct cli_source {
     uint32_t every;
     double min_length;
     const char *bundle;
+    const char *unit; /* of trees and meshes; NULL: as the file tells, or guessed */
 } cli_source;
 
 typedef struct cli_options {

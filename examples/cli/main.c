@@ -21,9 +21,12 @@ typedef struct command_row {
 } command_row;
 
 static const command_row commands[] = {
-    {"info", CLI_INFO, cli_info, "FILE... [--json]", "what is in line files",
+    {"info", CLI_INFO, cli_info, "FILE... [--json]",
+     "what is in files of lines, vessel trees and meshes",
      "  lineao info bundle.trk                 lines, points, box, attributes, groups\n"
-     "  lineao info *.trx --json               the same for scripts\n"},
+     "  lineao info *.trx --json               the same for scripts\n"
+     "  lineao info brain.swc aorta.stl        nodes, roots, radii; triangles, holes\n"
+     "  lineao info pulmonary.vtp --unit cm    for files that tell no unit\n"},
     {"render", CLI_RENDER, cli_render, "[FILE [FLAG...]]... -o out.png",
      "draw lines into a picture",
      "  lineao render -o aorta.png                                     the embedded scene\n"
@@ -55,7 +58,8 @@ static void print_help(void) {
     printf("\nExamples\n");
     for (int i = 0; i < COMMANDS; i++)
         printf("%s", commands[i].examples);
-    printf("\nFiles: .trk .tck .trx .tt .vtk .vtp, also gzip-compressed.\n"
+    printf("\nFiles, also gzip-compressed: lines .trk .tck .trx .tt .vtk .vtp .obj;\n"
+           "vessel trees .swc .gxl .h5 .vmv .vtk .vtp; meshes .stl .ply .obj .vtk .vtp.\n"
            "Flags of a command: lineao COMMAND --help\n");
 }
 

@@ -107,8 +107,8 @@ static bool read_bytes(io_reader *r, io_cursor bytes, const char *name, io_conte
         return io_fail(r, "is in no format that is read: it begins like none of trk, tck, trx, tt, "
                           "vtk, vtp, swc, gxl, h5, vmv, stl, ply, obj");
     if (!(found->kinds & r->wanted))
-        return io_fail(r, "holds %s (%s), and %s is needed here", kind_text(found->kinds),
-                       found->name, kind_text(r->wanted));
+        return io_fail(r, "holds %s (%s), not %s", kind_text(found->kinds), found->name,
+                       kind_text(r->wanted));
     r->step = 1;
     r->found = found->kinds & r->wanted;
     return io_tick(r, 0, 1) && found->read(r, &bytes) && finish(r, found->name, out);
