@@ -316,7 +316,7 @@ void *io_take_memory(io_reader *r, size_t count, size_t size) {
     return memory;
 }
 
-static char *take_text(io_reader *r, const char *text) {
+char *io_take_text(io_reader *r, const char *text) {
     size_t size = strlen(text) + 1;
     char *copy = io_take_memory(r, size, 1);
     return copy ? memcpy(copy, text, size) : NULL;
@@ -379,7 +379,7 @@ static bool copy_columns(io_reader *r, const io_columns *columns, const uint32_t
         io_attribute *attribute = &(*out)[(*count)++];
         size_t width = attribute->components = column->components;
         size_t kept = of_points ? lines->point_count : lines->line_count;
-        attribute->name = take_text(r, column->name);
+        attribute->name = io_take_text(r, column->name);
         attribute->data = io_take_memory(r, kept, width * sizeof *attribute->data);
         if (!attribute->name || !attribute->data || !pad_column(r, column, rows))
             return false;
@@ -404,7 +404,7 @@ static bool copy_groups(io_reader *r, const uint32_t *place, io_lines *lines) {
         const io_bundle *bundle = &r->bundles[i];
         io_group *group = &lines->groups[lines->group_count];
         group->lines = io_take_memory(r, bundle->count, sizeof *group->lines);
-        group->name = group->lines ? take_text(r, bundle->name) : NULL;
+        group->name = group->lines ? io_take_text(r, bundle->name) : NULL;
         lines->group_count++; /* now io_lines_free knows it */
         if (!group->name)
             return false;
@@ -447,7 +447,7 @@ bool io_take_columns(io_reader *r, const io_columns *columns, size_t rows, uint3
         io_column *column = &columns->items[i];
         io_attribute *attribute = &(*out)[(*count)++];
         size_t width = attribute->components = column->components;
-        attribute->name = take_text(r, column->name);
+        attribute->name = io_take_text(r, column->name);
         attribute->data = io_take_memory(r, rows, width * sizeof *attribute->data);
         if (!attribute->name || !attribute->data || !pad_column(r, column, rows))
             return false;
@@ -457,11 +457,11 @@ bool io_take_columns(io_reader *r, const io_columns *columns, size_t rows, uint3
     return true;
 }
 
-bool io_take_warnings(io_reader *r, uint32_t *count, char ***out) {
-    if (r->warning_count && !(*out = io_take_memory(r, r->warning_count, sizeof **out)))
+bool io_take_warnings(io_reader *r, char ***warnings, uint32_t *count) {
+    if (r->warning_count && !(*warnings = io_take_memory(r, r->warning_count, sizeof **warnings)))
         return false;
     for (size_t i = 0; i < r->warning_count; i++)
-        if (!((*out)[(*count)++] = take_text(r, r->warnings[i])))
+        if (!((*warnings)[(*count)++] = io_take_text(r, r->warnings[i])))
             return false;
     return true;
 }
@@ -484,7 +484,7 @@ bool io_finish(io_reader *r, const char *format, io_lines *out) {
         copy_columns(r, &r->line_columns, place, false, &lines, &lines.line_attribute_count,
                      &lines.line_attributes) &&
         copy_groups(r, place, &lines) && warn_of_content(r, &lines) &&
-        io_take_warnings(r, &lines.warning_count, &lines.warnings) && io_tick(r, 1, 1)) {
+        io_take_warnings(r, &lines.warnings, &lines.warning_count) && io_tick(r, 1, 1)) {
         *out = lines;
         return true;
     }

@@ -206,7 +206,7 @@ bool io_finish_tree(io_reader *r, const char *format, io_tree *out) {
                         &tree.node_attributes) &&
         io_take_columns(r, &g->segment_columns, g->segment_count, &tree.segment_attribute_count,
                         &tree.segment_attributes) &&
-        io_take_warnings(r, &tree.warning_count, &tree.warnings) && io_tick(r, 1, 1)) {
+        io_take_warnings(r, &tree.warnings, &tree.warning_count) && io_tick(r, 1, 1)) {
         *out = tree;
         return true;
     }

@@ -1,70 +1,114 @@
 /* HDF5 section graphs (Blue Brain, VessMorphoVis): points[n,4] = x y z DIAMETER, structure[s,..] =
  * first point of each section, connectivity[c,2] = parent and child section. */
+#include "io_hdf5.h"
+
 #include "io_graph.h"
 
-#include <hdf5.h>
 #include <math.h>
+#include <stdlib.h>
 #include <string.h>
 
-static const uint8_t signature[8] = {0x89, 'H', 'D', 'F', '\r', '\n', 0x1A, '\n'};
-
-/* A user block of 512, 1024, ... bytes may stand in front. */
 io_match io_sniff_h5(const io_cursor *bytes) {
-    for (size_t at = 0; at + 8 <= bytes->size && at < 1u << 20; at = at ? 2 * at : 512)
-        if (!memcmp(bytes->bytes + at, signature, 8))
-            return IO_YES;
-    return IO_NO;
+    return io_sniff_hdf5(bytes);
 }
 
-/* An array of doubles with `columns` values a row, of which the file has `width`. */
+#ifdef LINEAO_HAVE_HDF5
+
+/* ---- Tables ---------------------------------------------------------------------------------- */
+
+/* A table of numbers, of which the file has width columns. */
 typedef struct table {
     double *values;
     size_t rows, width;
 } table;
 
-static bool take_extent(io_reader *r, hid_t set, const char *name, size_t least, table *out) {
+/* What the child sends of each table, before its values. */
+typedef struct answer {
+    uint64_t rows, width;
+    uint64_t state; /* one of: */
+} answer;
+enum { GOOD, MISSING, BROKEN };
+
+/* The three tables, in this order. */
+typedef struct table_row {
+    const char *name;
+    uint64_t columns; /* at least */
+} table_row;
+static const table_row tables[] = {{"points", 4}, {"structure", 1}, {"connectivity", 2}};
+enum { POINTS, STRUCTURE, CONNECTIVITY, TABLES };
+
+/* Rows and columns of a table of numbers whose values are in this file. */
+static bool take_extent(hid_t set, uint64_t columns, answer *out) {
     hsize_t extent[2] = {0, 1};
-    hid_t space = H5Dget_space(set), type = H5Dget_type(set);
-    H5T_class_t class = H5Tget_class(type);
-    int rank = H5Sget_simple_extent_ndims(space);
-    bool good = (class == H5T_INTEGER || class == H5T_FLOAT) && (rank == 1 || rank == 2) &&
-                H5Sget_simple_extent_dims(space, extent, NULL) == rank;
-    H5Sclose(space);
-    H5Tclose(type);
-    if (!good || extent[1] < least || extent[1] > IO_MAX_COMPONENTS)
-        return io_fail(r, "has a data set '%s' that is not a table of numbers with %zu columns",
-                       name, least);
-    if (extent[0] > UINT32_MAX)
-        return io_fail(r, "has more than 4294967295 rows in its data set '%s'", name);
-    out->rows = (size_t)extent[0];
-    out->width = (size_t)extent[1];
-    return true;
+    hid_t space = H5Dget_space(set), type = H5Dget_type(set), list = H5Dget_create_plist(set);
+    H5T_class_t kind = type < 0 ? H5T_NO_CLASS : H5Tget_class(type);
+    int rank = space < 0 ? -1 : H5Sget_simple_extent_ndims(space);
+    bool good = (kind == H5T_INTEGER || kind == H5T_FLOAT) && (rank == 1 || rank == 2) &&
+                H5Sget_simple_extent_dims(space, extent, NULL) == rank && list >= 0 &&
+                H5Pget_external_count(list) <= 0;
+    out->rows = extent[0];
+    out->width = extent[1];
+    return good && extent[1] >= columns && extent[1] <= IO_MAX_COMPONENTS &&
+           extent[0] <= UINT32_MAX;
 }
 
-static bool take_table(io_reader *r, hid_t file, const char *name, size_t least, table *out) {
-    hid_t set = H5Dopen2(file, name, H5P_DEFAULT);
-    if (set < 0)
-        return io_fail(r,
-                       "holds no tree: its data set '%s' is missing or damaged; points, "
-                       "structure and connectivity are needed",
-                       name);
-    bool good = take_extent(r, set, name, least, out);
-    if (good) {
-        out->values = io_alloc(r, out->rows, out->width * sizeof *out->values);
-        good = out->values != NULL;
+/* In the child, which ends afterwards: nothing is closed. */
+static void send_table(int socket, hid_t file, const table_row *row) {
+    answer a;
+    double *values = NULL;
+    memset(&a, 0, sizeof a);
+    hid_t set = file >= 0 ? H5Dopen2(file, row->name, H5P_DEFAULT) : -1;
+    a.state = set < 0 ? MISSING : take_extent(set, row->columns, &a) ? GOOD : BROKEN;
+    size_t count = (size_t)a.rows * (size_t)a.width;
+    if (a.state == GOOD) {
+        values = malloc((count ? count : 1) * sizeof *values);
+        if (!values ||
+            (count && H5Dread(set, H5T_NATIVE_DOUBLE, H5S_ALL, H5S_ALL, H5P_DEFAULT, values) < 0))
+            a.state = BROKEN;
     }
-    if (good && out->rows &&
-        H5Dread(set, H5T_NATIVE_DOUBLE, H5S_ALL, H5S_ALL, H5P_DEFAULT, out->values) < 0)
-        good = io_fail(r, "has a damaged data set '%s'; copy the file again", name);
-    H5Dclose(set);
-    return good;
+    if (io_hdf5_send(socket, &a, sizeof a) && a.state == GOOD)
+        io_hdf5_send(socket, values, count * sizeof *values);
+    free(values);
+}
+
+static void serve(int socket, hid_t file) {
+    for (int i = 0; i < TABLES; i++)
+        send_table(socket, file, &tables[i]);
+}
+
+static bool take_table(io_reader *r, const io_hdf5_child *child, const table_row *row, table *out) {
+    answer a;
+    if (!io_hdf5_receive(r, child, &a, sizeof a))
+        return false;
+    if (a.state == MISSING)
+        return io_fail(r,
+                       "holds no tree: its data set '%s' is missing or damaged; points, structure "
+                       "and connectivity are needed",
+                       row->name);
+    if (a.state != GOOD || a.rows > UINT32_MAX || a.width > IO_MAX_COMPONENTS)
+        return io_fail(r,
+                       "has a data set '%s' that is damaged or not a table of numbers with %u "
+                       "columns",
+                       row->name, (unsigned)row->columns);
+    out->rows = (size_t)a.rows;
+    out->width = (size_t)a.width;
+    out->values = io_alloc(r, out->rows, out->width * sizeof *out->values);
+    return out->values &&
+           io_hdf5_receive(r, child, out->values, out->rows * out->width * sizeof *out->values);
+}
+
+static bool take_tables(io_reader *r, const io_cursor *bytes, table out[TABLES]) {
+    io_hdf5_child child;
+    bool done = io_hdf5_start(r, bytes, serve, &child);
+    if (!done)
+        return false;
+    for (int i = 0; done && i < TABLES; i++)
+        done = take_table(r, &child, &tables[i], &out[i]);
+    io_hdf5_stop(&child);
+    return done;
 }
 
 /* ---- Sections -------------------------------------------------------------------------------- */
-
-typedef struct sections {
-    table points, first, links;
-} sections;
 
 static bool add_nodes(io_reader *r, const table *points) {
     for (size_t i = 0; i < points->rows; i++) {
@@ -78,22 +122,23 @@ static bool add_nodes(io_reader *r, const table *points) {
 }
 
 /* The points of a section: begin .. end - 1. */
-static bool range_of(io_reader *r, const sections *s, size_t section, size_t *begin, size_t *end) {
-    double rows = (double)s->points.rows, first = s->first.values[section * s->first.width];
-    double next =
-        section + 1 < s->first.rows ? s->first.values[(section + 1) * s->first.width] : rows;
+static bool range_of(io_reader *r, const table *t, size_t section, size_t *begin, size_t *end) {
+    double rows = (double)t[POINTS].rows, first = t[STRUCTURE].values[section * t[STRUCTURE].width];
+    double next = section + 1 < t[STRUCTURE].rows
+                      ? t[STRUCTURE].values[(section + 1) * t[STRUCTURE].width]
+                      : rows;
     if (!(first >= 0 && first <= next && next <= rows))
         return io_fail(r, "has a section %zu that does not lie within the %zu points", section,
-                       s->points.rows);
+                       t[POINTS].rows);
     *begin = (size_t)first;
     *end = (size_t)next;
     return true;
 }
 
-static bool add_sections(io_reader *r, const sections *s) {
-    for (size_t i = 0; i < s->first.rows; i++) {
+static bool add_sections(io_reader *r, const table *t) {
+    for (size_t i = 0; i < t[STRUCTURE].rows; i++) {
         size_t begin, end;
-        if (!range_of(r, s, i, &begin, &end))
+        if (!range_of(r, t, i, &begin, &end))
             return false;
         for (size_t k = begin + 1; k < end; k++)
             if (!io_graph_add_segment(r, k - 1, k, (double)NAN, i))
@@ -103,18 +148,18 @@ static bool add_sections(io_reader *r, const sections *s) {
 }
 
 /* The last point of a parent usually is the first of its child, else a segment joins them. */
-static bool add_links(io_reader *r, const sections *s) {
+static bool add_links(io_reader *r, const table *t) {
     const double *positions = r->graph->positions;
-    for (size_t i = 0; i < s->links.rows; i++) {
-        const double *link = s->links.values + i * s->links.width;
+    for (size_t i = 0; i < t[CONNECTIVITY].rows; i++) {
+        const double *link = t[CONNECTIVITY].values + i * t[CONNECTIVITY].width;
         size_t begin[2], end[2];
         for (int k = 0; k < 2; k++) {
-            if (!(link[k] >= 0 && link[k] < (double)s->first.rows))
+            if (!(link[k] >= 0 && link[k] < (double)t[STRUCTURE].rows))
                 return io_fail(r,
                                "connects a section that is not one of its %zu: row %zu of "
                                "connectivity",
-                               s->first.rows, i);
-            if (!range_of(r, s, (size_t)link[k], &begin[k], &end[k]))
+                               t[STRUCTURE].rows, i);
+            if (!range_of(r, t, (size_t)link[k], &begin[k], &end[k]))
                 return false;
         }
         if (begin[0] == end[0] || begin[1] == end[1])
@@ -127,35 +172,18 @@ static bool add_links(io_reader *r, const sections *s) {
     return true;
 }
 
-static bool read_sections(io_reader *r, hid_t file) {
-    sections s;
-    memset(&s, 0, sizeof s);
-    if (!take_table(r, file, "points", 4, &s.points) ||
-        !take_table(r, file, "structure", 1, &s.first) ||
-        !take_table(r, file, "connectivity", 2, &s.links))
-        return false;
-    return io_graph_new(r, IO_TREE_SECTIONS) && add_nodes(r, &s.points) && add_sections(r, &s) &&
-           add_links(r, &s);
-}
-
-/* The library reads from the bytes in memory, and keeps silent meanwhile. */
 bool io_read_h5(io_reader *r, io_cursor *bytes) {
-    H5E_auto2_t handler;
-    void *user;
-    H5Eget_auto2(H5E_DEFAULT, &handler, &user);
-    H5Eset_auto2(H5E_DEFAULT, NULL, NULL);
-    hid_t access = H5Pcreate(H5P_FILE_ACCESS);
-    /* the library copies the image, and does not change it; its interface lacks the const */
-    bool ready = H5Pset_fapl_core(access, 1 << 16, 0) >= 0 &&
-                 H5Pset_file_image(access, (void *)(uintptr_t)bytes->bytes, bytes->size) >= 0;
-    hid_t file = ready ? H5Fopen("lineao", H5F_ACC_RDONLY, access) : -1;
-    bool done = file >= 0 ? read_sections(r, file)
-                          : io_fail(r, "is damaged, or not an HDF5 file; copy it again");
-    if (file >= 0)
-        H5Fclose(file);
-    H5Pclose(access);
-    H5Eset_auto2(H5E_DEFAULT, handler, user);
-    if (done)
-        r->graph->unit = "um"; /* the format's */
-    return done;
+    table t[TABLES];
+    memset(t, 0, sizeof t);
+    if (!take_tables(r, bytes, t) || !io_graph_new(r, IO_TREE_SECTIONS) ||
+        !add_nodes(r, &t[POINTS]) || !add_sections(r, t) || !add_links(r, t))
+        return false;
+    r->graph->unit = "um"; /* the format's */
+    return true;
 }
+#else
+bool io_read_h5(io_reader *r, io_cursor *bytes) {
+    (void)bytes;
+    return io_fail(r, "is HDF5, which this build does not read; build it with libhdf5-dev");
+}
+#endif

@@ -144,6 +144,10 @@ typedef struct io_reader {
     size_t dropped_points, empty_lines;
 } io_reader;
 
+/* options may be NULL. The memory of the read is limited as if its file were huge. */
+void io_begin(io_reader *reader, const io_options *options, io_error *error);
+/* Limits the memory of the read by the size of its files. */
+void io_set_limit(io_reader *reader, size_t size);
 void io_reader_free(io_reader *reader);
 
 /* Both write the error text and are false, so that a reader may `return io_fail(...)`. */
@@ -191,15 +195,18 @@ void io_next_batch(io_reader *reader);
 /* Puts a line (by its row) into a group; the group is made at first use. */
 io_bundle *io_add_bundle(io_reader *reader, io_text name);
 bool io_bundle_add(io_reader *reader, io_bundle *bundle, uint32_t row);
+/* Memory of a result, which outlives the reader: zeroed, for free(), not NULL for a zero count.
+ * NULL: error written. */
+void *io_take_memory(io_reader *reader, size_t count, size_t size);
+char *io_take_text(io_reader *reader, const char *text);
+/* The warnings for a result; *count counts what is to be freed, also on failure. */
+bool io_take_warnings(io_reader *reader, char ***warnings, uint32_t *count);
 /* Filters, centres and hands the lines over. */
 bool io_finish(io_reader *reader, const char *format, io_lines *out);
 
-/* Hands over memory that outlives the reader: zeroed, never NULL for a count of 0; NULL with an
- * error when the system has none. */
-void *io_take_memory(io_reader *reader, size_t count, size_t size);
+/* Columns for a result, of that many rows. */
 bool io_take_columns(io_reader *reader, const io_columns *columns, size_t rows, uint32_t *count,
                      io_attribute **out);
-bool io_take_warnings(io_reader *reader, uint32_t *count, char ***out);
 void io_free_attributes(io_attribute *attributes, uint32_t count);
 void io_free_warnings(char **warnings, uint32_t count);
 /* What is taken off coordinates with these bounds before they become floats (io_lines.origin). */

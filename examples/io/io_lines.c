@@ -70,14 +70,6 @@ static const format *find_format(const io_cursor *bytes, const char *name) {
 
 /* ---- Reading --------------------------------------------------------------------------------- */
 
-/* Real files need at most a few times their size; compressed ones more. 32-bit systems have less to
- * give. */
-static void set_limit(io_reader *r, size_t size) {
-    const uint64_t most = sizeof(size_t) > 4 ? UINT64_C(32) << 30 : UINT64_C(1) << 30;
-    uint64_t limit = size > most / 4096 ? most : (UINT64_C(64) << 20) + (uint64_t)size * 4096;
-    r->limit = (size_t)(limit < most ? limit : most);
-}
-
 static const char *kind_text(unsigned kinds) {
     return kinds & IO_LINES ? "lines" : kinds & IO_TREE ? "a vessel tree" : "a surface mesh";
 }
@@ -99,7 +91,7 @@ static bool finish(io_reader *r, const char *name, io_contents *out) {
 static bool read_bytes(io_reader *r, io_cursor bytes, const char *name, io_contents *out) {
     if (!bytes.size)
         return io_fail(r, "is empty (0 bytes)");
-    set_limit(r, bytes.size);
+    io_set_limit(r, bytes.size);
     if (io_is_gzip(&bytes) && !io_gunzip(r, &bytes))
         return false;
     const format *found = find_format(&bytes, name);
@@ -114,19 +106,11 @@ static bool read_bytes(io_reader *r, io_cursor bytes, const char *name, io_conte
     return io_tick(r, 0, 1) && found->read(r, &bytes) && finish(r, found->name, out);
 }
 
-static void begin(io_reader *r, unsigned wanted, const io_options *options, io_error *error) {
-    static const io_options none = {0, 0, NULL, false, NULL, NULL, NULL};
-    memset(r, 0, sizeof *r);
-    r->options = options ? options : &none;
-    r->error = error;
-    r->wanted = wanted;
-    set_limit(r, SIZE_MAX);
-}
-
 bool io_read_memory(const void *bytes, size_t size, const char *name_hint, unsigned wanted,
                     const io_options *options, io_contents *out, io_error *error) {
     io_reader r;
-    begin(&r, wanted, options, error);
+    io_begin(&r, options, error);
+    r.wanted = wanted;
     io_cursor cursor = {bytes, size, 0};
     bool done = read_bytes(&r, cursor, name_hint, out);
     io_reader_free(&r);
@@ -143,7 +127,8 @@ static bool read_folder(io_reader *r, const char *path, io_contents *out) {
 bool io_read(const char *path, unsigned wanted, const io_options *options, io_contents *out,
              io_error *error) {
     io_reader r;
-    begin(&r, wanted, options, error);
+    io_begin(&r, options, error);
+    r.wanted = wanted;
     struct stat info;
     io_cursor bytes;
     bool done;

@@ -167,7 +167,7 @@ bool io_finish_mesh(io_reader *r, const char *format, io_mesh *out) {
                         &mesh.vertex_attributes) &&
         io_take_columns(r, &s->triangle_columns, s->triangle_count, &mesh.triangle_attribute_count,
                         &mesh.triangle_attributes) &&
-        warn_of_content(r, s) && io_take_warnings(r, &mesh.warning_count, &mesh.warnings) &&
+        warn_of_content(r, s) && io_take_warnings(r, &mesh.warnings, &mesh.warning_count) &&
         io_tick(r, 1, 1)) {
         *out = mesh;
         return true;

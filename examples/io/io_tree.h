@@ -38,8 +38,7 @@ typedef struct io_tree {
 
 /* Reads a file. options may be NULL; of them only unit, progress and user matter. On failure
  * returns false, writes error and leaves out untouched; on success out is overwritten (free what it
- * held before) and the caller owns it. HDF5 files: one thread at a time, for the library keeps
- * state. */
+ * held before) and the caller owns it. */
 bool io_read_tree(const char *path, const io_options *options, io_tree *out, io_error *error);
 
 /* The same from size bytes in memory; name_hint as in io_read_lines_memory. */

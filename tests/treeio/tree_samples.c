@@ -69,8 +69,9 @@ static void put_gxl_edge(buffer *b, size_t i) {
 }
 
 static buffer gxl(void) {
-    buffer b = text_file("\n<gxl><graph id=\"t\" edgeids=\" true\"><info_graph><attr name=\" pPerf\">"
-                         "<float>13300</float></attr></info_graph>\n");
+    buffer b =
+        text_file("\n<gxl><graph id=\"t\" edgeids=\" true\"><info_graph><attr name=\" pPerf\">"
+                  "<float>13300</float></attr></info_graph>\n");
     for (size_t i = 0; i < TREE_NODES; i++)
         put_gxl_node(&b, i);
     for (size_t i = 0; i < TREE_SEGMENTS; i++)
@@ -319,25 +320,18 @@ static buffer stl_ascii(void) {
 }
 
 static void put_ply_head(buffer *b, const char *format, const char *end) {
-    static const char *const lines[] = {"comment made by code",
-                                        "element vertex 5",
-                                        "property float x",
-                                        "property float32 y",
-                                        "property double z",
-                                        "property short wss",
-                                        "element extra 1",
-                                        "property list uint8 ushort a",
-                                        "element face 5",
-                                        "property list uchar uint vertex_indices",
-                                        "property int part",
-                                        "end_header"};
+    static const char *const lines[] = {
+        "comment made by code", "element vertex 5",
+        "property float x",     "property float32 y",
+        "property double z",    "property float wss",
+        "element extra 1",      "property list uint8 ushort a",
+        "element face 5",       "property list uchar uint vertex_indices",
+        "property int part",    "end_header"};
     put_format(b, "ply%sformat %s 1.0%s", end, format, end);
     for (size_t i = 0; i < sizeof lines / sizeof lines[0]; i++)
         put_format(b, "%s%s", lines[i], end);
 }
 
-/* wss is stored as a whole number, thus twice its value would be needed; 0.5 steps are not: it is
- * stored as twice wss in binary and ascii alike, and tested so. */
 static buffer ply_ascii(void) {
     buffer b = {0};
     put_ply_head(&b, "ascii", "\r\n");
@@ -362,7 +356,7 @@ static buffer ply_binary(bool big) {
         put_f32(&b, mesh_positions[i][0]);
         put_f32(&b, mesh_positions[i][1]);
         put_f64(&b, mesh_positions[i][2]);
-        put_u16(&b, (unsigned)i);
+        put_f32(&b, mesh_stress(i));
     }
     put_u8(&b, 2);
     put_u16(&b, 7);
@@ -473,8 +467,8 @@ const mesh_sample mesh_samples[] = {
     {"solid.stl",    stl_binary,   "stl", false, false, true},
     {"text.stl",     stl_ascii,    "stl", false, false, true},
     {"ascii.ply",    ply_ascii,    "ply", true,  true,  false},
-    {"little.ply",   ply_little,   "ply", false, true,  false},
-    {"big.ply",      ply_big,      "ply", false, true,  false},
+    {"little.ply",   ply_little,   "ply", true,  true,  false},
+    {"big.ply",      ply_big,      "ply", true,  true,  false},
     {"forms.obj",    obj,          "obj", false, false, false},
     {"polygons.vtk", vtk_polygons, "vtk", true,  true,  false},
     {"modern.vtk",   vtk_modern,   "vtk", false, false, false},
