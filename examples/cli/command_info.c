@@ -1,6 +1,7 @@
-/* lineao info: what is in files of lines, vessel trees and meshes. */
+/* lineao info: what is in files of lines, vessel trees, meshes and velocity volumes. */
 #include "commands.h"
 #include "dump.h"
+#include "flow.h"
 #include "io_vessel.h"
 #include "load.h"
 #include "report.h"
@@ -13,6 +14,7 @@
 /* What is known about one FILE. */
 typedef struct entry {
     const char *path;
+    io_volume volume; /* where size[0] is not 0; else: */
     io_contents contents;
     io_vessel vessel; /* when there is a tree */
     uint32_t stored;  /* vertices of the mesh before welding */
@@ -32,9 +34,22 @@ static void add_warning(entry *e, const char *text) {
         snprintf(e->warnings[e->warning_count++], sizeof *e->warnings, "%s", text);
 }
 
-static void add_warnings(entry *e, char **texts, uint32_t count) {
+static void add_warnings(entry *e, char *const *texts, uint32_t count) {
     for (uint32_t i = 0; i < count; i++)
         add_warning(e, texts[i]);
+}
+
+/* Each file for itself, also those that are one frame or component of a volume. A unit with a slash
+ * is one of velocities. */
+static bool gather_volume(const cli_options *options, const cli_source *source, entry *e) {
+    cli_options own = *options;
+    e->path = source->path;
+    if (source->unit && strchr(source->unit, '/'))
+        own.flow.unit = source->unit;
+    if (!cli_read_volume(&own, source, 1, true, &e->volume))
+        return false;
+    add_warnings(e, e->volume.warnings, e->volume.warning_count);
+    return true;
 }
 
 /* The tree as vessels are drawn, the mesh as surfaces are: built and welded. */
@@ -102,6 +117,26 @@ static const io_attribute *attributes_of(const io_contents *c, bool of_points, u
     return all[kind][of_points];
 }
 
+/* ---- volumes ---------------------------------------------------------------------------- */
+
+/* Lengths of a voxel's edges (mm). */
+static void find_spacing(const io_volume *v, double spacing[3]) {
+    for (int k = 0; k < 3; k++)
+        spacing[k] = sqrt(v->to_mm[0][k] * v->to_mm[0][k] + v->to_mm[1][k] * v->to_mm[1][k] +
+                          v->to_mm[2][k] * v->to_mm[2][k]);
+}
+
+/* Of all voxel centres (mm). */
+static void find_box(const io_volume *v, double box[2][3]) {
+    for (int row = 0; row < 3; row++) {
+        box[0][row] = box[1][row] = v->to_mm[row][3];
+        for (int k = 0; k < 3; k++) {
+            double edge = v->to_mm[row][k] * ((double)v->size[k] - 1);
+            box[edge > 0][row] += edge;
+        }
+    }
+}
+
 /* ---- numbers of trees and meshes -------------------------------------------------------- */
 
 typedef struct figure {
@@ -143,6 +178,11 @@ static void add_names(cJSON *array, const io_contents *contents, bool of_points)
         cJSON_AddItemToArray(array, cJSON_CreateString(attributes[i].name));
 }
 
+static void add_texts(cJSON *array, char *const *texts, uint32_t count) {
+    for (uint32_t i = 0; i < count; i++)
+        cJSON_AddItemToArray(array, cJSON_CreateString(texts[i]));
+}
+
 static void add_figures(cJSON *file, const figure *figures, uint32_t count) {
     for (uint32_t i = 0; i < count; i++)
         cJSON_AddNumberToObject(file, figures[i].name, figures[i].value);
@@ -162,6 +202,12 @@ static void add_parts(cJSON *file, const entry *e) {
         mesh_figures(e, mesh);
         add_figures(file, mesh, MESH_FIGURES);
     }
+}
+
+static void add_warning_texts(cJSON *file, const entry *e) {
+    cJSON *warnings = cJSON_AddArrayToObject(file, "warnings");
+    for (uint32_t i = 0; i < e->warning_count; i++)
+        cJSON_AddItemToArray(warnings, cJSON_CreateString(e->warnings[i]));
 }
 
 static cJSON *describe(const entry *e) {
@@ -191,9 +237,39 @@ static cJSON *describe(const entry *e) {
     for (uint32_t i = 0; i < c->lines.group_count; i++)
         cJSON_AddItemToArray(groups, cJSON_CreateString(c->lines.groups[i].name));
     cJSON_AddStringToObject(file, "unit", unit_of(c));
-    cJSON *warnings = cJSON_AddArrayToObject(file, "warnings");
-    for (uint32_t i = 0; i < e->warning_count; i++)
-        cJSON_AddItemToArray(warnings, cJSON_CreateString(e->warnings[i]));
+    add_warning_texts(file, e);
+    return file;
+}
+
+static cJSON *describe_volume(const entry *e) {
+    const io_volume *v = &e->volume;
+    const double size[3] = {v->size[0], v->size[1], v->size[2]};
+    double spacing[3], box[2][3];
+    find_spacing(v, spacing);
+    find_box(v, box);
+    cJSON *file = cJSON_CreateObject();
+    cJSON_AddStringToObject(file, "path", e->path);
+    cJSON_AddStringToObject(file, "format", v->format);
+    cJSON_AddNumberToObject(file, "lines", 0);
+    cJSON_AddNumberToObject(file, "points", 0);
+    cJSON *corners = cJSON_AddArrayToObject(file, "bbox");
+    for (int i = 0; i < 2; i++)
+        cJSON_AddItemToArray(corners, cJSON_CreateDoubleArray(box[i], 3));
+    add_texts(cJSON_AddArrayToObject(file, "attributes"), v->arrays, v->array_count);
+    cJSON_AddStringToObject(file, "unit", "mm");
+    cJSON_AddItemToObject(file, "size", cJSON_CreateDoubleArray(size, 3));
+    cJSON_AddItemToObject(file, "spacing", cJSON_CreateDoubleArray(spacing, 3));
+    cJSON *rows = cJSON_AddArrayToObject(file, "to_mm");
+    for (int row = 0; row < 3; row++)
+        cJSON_AddItemToArray(rows, cJSON_CreateDoubleArray(v->to_mm[row], 4));
+    cJSON_AddNumberToObject(file, "frames", v->frame_count);
+    cJSON_AddNumberToObject(file, "time_step", v->time_step);
+    cJSON_AddNumberToObject(file, "period", v->period);
+    cJSON_AddStringToObject(file, "velocity_unit", "m/s");
+    cJSON_AddItemToObject(file, "speed", cJSON_CreateDoubleArray(v->speed, 2));
+    cJSON_AddBoolToObject(file, "mask", v->mask != NULL);
+    cJSON_AddNumberToObject(file, "mask_voxels", (double)v->mask_voxels);
+    add_warning_texts(file, e);
     return file;
 }
 
@@ -264,17 +340,43 @@ static void print(const entry *e) {
     }
 }
 
+static void print_volume(const entry *e) {
+    const io_volume *v = &e->volume;
+    double spacing[3], box[2][3];
+    find_spacing(v, spacing);
+    find_box(v, box);
+    printf("%s\n  format              %s\n  voxels              %u x %u x %u of %g x %g x %g mm\n",
+           e->path, v->format, v->size[0], v->size[1], v->size[2], spacing[0], spacing[1],
+           spacing[2]);
+    printf("  box (mm)            %g %g %g .. %g %g %g\n", box[0][0], box[0][1], box[0][2],
+           box[1][0], box[1][1], box[1][2]);
+    if (v->frame_count > 1)
+        printf("  frames              %u of %g ms (period %g ms)\n", v->frame_count, v->time_step,
+               v->period);
+    else
+        printf("  frames              1 (steady)\n");
+    printf("  speed               %g .. %g m/s%s\n", v->speed[0], v->speed[1],
+           v->mask ? " inside the mask" : "");
+    if (v->mask)
+        printf("  mask                %llu voxels\n", (unsigned long long)v->mask_voxels);
+    printf("  arrays              ");
+    for (uint32_t i = 0; i < v->array_count; i++)
+        printf("%s%s", i ? ", " : "", v->arrays[i]);
+    printf("\n");
+}
+
 /* ---- command ---------------------------------------------------------------------------- */
 
 static bool show(const cli_options *options, const entry *entries) {
     if (options->json) {
         cJSON *json = cJSON_CreateObject(), *list = cJSON_AddArrayToObject(json, "files");
         for (uint32_t i = 0; i < options->file_count; i++)
-            cJSON_AddItemToArray(list, describe(&entries[i]));
+            cJSON_AddItemToArray(list, entries[i].volume.size[0] ? describe_volume(&entries[i])
+                                                                 : describe(&entries[i]));
         return cli_write_json(NULL, json);
     }
     for (uint32_t i = 0; i < options->file_count; i++)
-        print(&entries[i]);
+        (entries[i].volume.size[0] ? print_volume : print)(&entries[i]);
     for (uint32_t i = 0; i < options->file_count; i++) {
         for (uint32_t w = 0; w < entries[i].warning_count; w++)
             cli_warn(entries[i].path, entries[i].warnings[w]);
@@ -289,9 +391,12 @@ int cli_info(const cli_options *options) {
     if (!ok)
         cli_fail("out of memory");
     for (uint32_t i = 0; ok && i < options->file_count; i++)
-        ok = gather(&options->files[i], &entries[i]);
+        ok = cli_count_volumes(&options->files[i], 1, 0)
+                 ? gather_volume(options, &options->files[i], &entries[i])
+                 : gather(&options->files[i], &entries[i]);
     ok = ok && show(options, entries);
     for (uint32_t i = 0; entries && i < options->file_count; i++) {
+        io_volume_free(&entries[i].volume);
         io_contents_free(&entries[i].contents);
         io_vessel_free(&entries[i].vessel);
     }

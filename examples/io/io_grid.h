@@ -25,7 +25,7 @@ typedef struct io_grid io_grid;
 struct io_grid {
     const char *format;
     uint32_t size[3];   /* at least 1 each; their product is at most io_grid_voxels */
-    double to_mm[3][4]; /* identity plus origin when the spacing is not told */
+    double to_mm[3][4]; /* invertible; voxels of 1 mm when has_spacing is false */
     bool has_spacing;
     double time_step;    /* ms; 0 = not told */
     const char *vectors; /* name of the array that the file calls its vectors, or NULL */

@@ -9,7 +9,7 @@
 #include <string.h>
 
 io_match io_sniff_h5(const io_cursor *bytes) {
-    return io_sniff_hdf5(bytes);
+    return io_is_section_graph(bytes) ? IO_YES : io_is_hdf5(bytes) ? IO_MAYBE : IO_NO;
 }
 
 #ifdef LINEAO_HAVE_HDF5

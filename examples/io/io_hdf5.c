@@ -6,17 +6,8 @@
 
 #include <string.h>
 
-static const char signature[] = "\x89HDF\r\n\x1A\n";
-
-/* At byte 0, 512, 1024, 2048 ...: files may begin with a block of the user's. */
 io_match io_sniff_hdf5(const io_cursor *bytes) {
-    for (size_t at = 0; at + 8 <= bytes->size; at = at ? 2 * at : 512) {
-        if (!memcmp(bytes->bytes + at, signature, 8))
-            return IO_YES;
-        if (at > SIZE_MAX / 2)
-            break;
-    }
-    return IO_NO;
+    return io_is_hdf5(bytes) && !io_is_section_graph(bytes) ? IO_YES : IO_NO;
 }
 
 #ifdef LINEAO_HAVE_HDF5

@@ -6,6 +6,10 @@
 #include "io_internal.h"
 
 /* Has it the signature? */
+bool io_is_hdf5(const io_cursor *bytes);
+/* Does its begin name the data sets of a vessel tree? */
+bool io_is_section_graph(const io_cursor *bytes);
+/* As a volume: HDF5 that is no tree. */
 io_match io_sniff_hdf5(const io_cursor *bytes);
 
 #ifdef LINEAO_HAVE_HDF5

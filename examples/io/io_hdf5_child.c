@@ -1,12 +1,36 @@
 /* See io_hdf5.h. */
 #include "io_hdf5.h"
 
+#include <string.h>
+
+/* At byte 0, 512, 1024, 2048 ...: files may begin with a block of the user's. */
+bool io_is_hdf5(const io_cursor *bytes) {
+    for (size_t at = 0; at + 8 <= bytes->size && at < 1u << 30; at = at ? 2 * at : 512)
+        if (!memcmp(bytes->bytes + at, "\x89HDF\r\n\x1A\n", 8))
+            return true;
+    return false;
+}
+
+static bool holds(const uint8_t *bytes, size_t size, const char *word) {
+    size_t length = strlen(word);
+    for (size_t i = 0; i + length <= size; i++)
+        if (bytes[i] == (uint8_t)word[0] && !memcmp(bytes + i, word, length))
+            return true;
+    return false;
+}
+
+/* HDF5 writes the names of the root's data sets as they are, near the begin. */
+bool io_is_section_graph(const io_cursor *bytes) {
+    size_t size = bytes->size < 65536 ? bytes->size : 65536;
+    return io_is_hdf5(bytes) && holds(bytes->bytes, size, "points") &&
+           holds(bytes->bytes, size, "structure") && holds(bytes->bytes, size, "connectivity");
+}
+
 #ifdef LINEAO_HAVE_HDF5
 #include <errno.h>
 #include <fcntl.h>
 #include <poll.h>
 #include <signal.h>
-#include <string.h>
 #include <sys/resource.h>
 #include <sys/socket.h>
 #include <sys/wait.h>

@@ -474,6 +474,8 @@ static bool set_space(gather *g, io_volume *out) {
     bool given = spacing[0] > 0 && spacing[1] > 0 && spacing[2] > 0;
     memcpy(out->size, grid->size, sizeof out->size);
     memcpy(out->to_mm, grid->to_mm, sizeof out->to_mm);
+    if (!given && !grid->has_spacing && g->options->guess)
+        return io_warn(&g->r, "it tells no size of its voxels; 1 mm is taken; --spacing gives it");
     if (!given && !grid->has_spacing)
         return io_fail(&g->r, "tells no size of its voxels; give it in mm: --spacing X,Y,Z");
     for (int column = 0; column < 3 && given; column++) {
@@ -481,9 +483,7 @@ static bool set_space(gather *g, io_volume *out) {
         for (int row = 0; row < 3; row++)
             length += grid->to_mm[row][column] * grid->to_mm[row][column];
         for (int row = 0; row < 3; row++)
-            out->to_mm[row][column] =
-                grid->has_spacing ? grid->to_mm[row][column] / sqrt(length) * spacing[column]
-                                  : spacing[column] * (row == column);
+            out->to_mm[row][column] = grid->to_mm[row][column] / sqrt(length) * spacing[column];
     }
     return true;
 }
@@ -506,6 +506,11 @@ static bool set_time(gather *g, io_volume *out) {
                        "one of --period and --time-step",
                        (unsigned)frames, o->period, from_period, o->time_step);
     step = o->time_step > 0 ? o->time_step : o->period > 0 ? from_period : step;
+    bool guess = !(step > 0) && g->options->guess;
+    if (guess && !io_warn(&g->r, "it tells no time between its frames; 1 ms is taken; --time-step "
+                                 "gives it"))
+        return false;
+    step = guess ? 1 : step;
     if (!(step > 0))
         return io_fail(&g->r,
                        "has %u frames and tells no time between them; give it in ms: "
@@ -680,7 +685,7 @@ bool io_read_volume_memory(const io_source *sources, uint32_t count,
 }
 
 bool io_is_volume(const char *path) {
-    uint8_t head[8192];
+    uint8_t head[65536];
     gzFile file = gzopen(path, "rb"); /* reads what is not compressed as it is */
     int size = file ? gzread(file, head, sizeof head) : 0;
     if (file)

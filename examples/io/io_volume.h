@@ -56,6 +56,7 @@ typedef struct io_volume_options {
     double time_step;     /* ms between frames; 0 = the file's */
     double period;        /* ms, of all frames; 0 = from time_step */
     bool along_grid;      /* components run along the axes of the grid, not of the mm */
+    bool guess;           /* voxels of 1 mm and frames of 1 ms, with a warning, where not told */
     io_progress progress; /* NULL = none */
     void *user;           /* handed to progress */
 } io_volume_options;

@@ -16,6 +16,34 @@ io_match io_sniff_points(const io_cursor *bytes) {
 
 /* ---- Grid ------------------------------------------------------------------------------------ */
 
+static double determinant(const double m[9]) {
+    return m[0] * (m[4] * m[8] - m[5] * m[7]) - m[1] * (m[3] * m[8] - m[5] * m[6]) +
+           m[2] * (m[3] * m[7] - m[4] * m[6]);
+}
+
+/* first: index of the grid's first point, or cell centre, on each axis. Spacing of 0 is as good as
+ * not told. */
+static bool set_affine(io_reader *r, const io_image *image, const double first[3], io_grid *grid) {
+    grid->has_spacing = image->has_spacing && image->spacing[0] != 0 && image->spacing[1] != 0 &&
+                        image->spacing[2] != 0;
+    if (!(fabs(determinant(image->direction)) > 1e-9))
+        return io_fail(r, "has a Direction that is no orientation");
+    for (int row = 0; row < 3; row++) {
+        grid->to_mm[row][3] = image->origin[row];
+        for (int column = 0; column < 3; column++) {
+            double step = image->direction[3 * row + column] *
+                          (grid->has_spacing ? fabs(image->spacing[column]) : 1);
+            grid->to_mm[row][column] = step;
+            grid->to_mm[row][3] += step * first[column];
+            if (!(fabs(step) < 1e9))
+                return io_fail(r, "has a broken Spacing or Direction");
+        }
+        if (!(fabs(grid->to_mm[row][3]) < 1e12))
+            return io_fail(r, "has a broken Origin");
+    }
+    return true;
+}
+
 /* cells: the grid of cell centres. */
 static bool set_grid(io_reader *r, const io_image *image, bool cells, io_grid *grid) {
     uint64_t size[3];
@@ -31,20 +59,7 @@ static bool set_grid(io_reader *r, const io_image *image, bool cells, io_grid *g
             first[axis] += 0.5;
         }
     }
-    grid->has_spacing = image->has_spacing;
-    for (int row = 0; row < 3; row++) {
-        grid->to_mm[row][3] = image->origin[row];
-        for (int column = 0; column < 3; column++) {
-            double step = image->direction[3 * row + column] * fabs(image->spacing[column]);
-            if (image->has_spacing && !(fabs(step) < 1e9 && fabs(image->origin[row]) < 1e9))
-                return io_fail(r, "has a broken Spacing, Origin or Direction");
-            if (image->has_spacing && !(fabs(image->spacing[column]) > 0))
-                grid->has_spacing = false; /* 0 or NaN: as good as not told */
-            grid->to_mm[row][column] = step;
-            grid->to_mm[row][3] += step * first[column];
-        }
-    }
-    return io_grid_size(r, grid, size);
+    return set_affine(r, image, first, grid) && io_grid_size(r, grid, size);
 }
 
 /* ---- XML ------------------------------------------------------------------------------------- */

@@ -270,7 +270,7 @@ static void swc_of_a_million_lines(void **state) {
     "<node id='" id "'><attr name=' position'><tup>" position "</tup></attr></node>"
 #define EDGE(from, to, radius)                                                                     \
     "<edge from='" from "' to='" to "'><attr name=' radius'><float>" radius "</float></attr></"    \
-                                                                            "edge>"
+    "edge>"
 #define F(a) "<float>" a "</float>"
 
 static void gxl_odd_files(void **state) {
@@ -294,6 +294,13 @@ static void gxl_odd_files(void **state) {
     refuse_text("<gxl><graph><node><attr/></node></graph></gxl>", "'id'");
     refuse_text("<gxl><graph></graph></gxl>", "no nodes");
     refuse_text("<gxl><graph>", "XML");
+    refuse_text(
+        "<gxl><graph>" NODE(
+            "a",
+            F("1") F(
+                "2")) "<edge from='a' to='a'><attr name='radius'>"
+                      "<float>1<attr name='b'/></float></attr></edge><node id='b'/></graph></gxl>",
+        "position"); /* a tag within a number */
 }
 
 /* The widest of several: of the edges that enter a node, and for the root of those that leave. */

@@ -293,7 +293,11 @@ static void vti_grid(void **state) {
         {"WholeExtent=\"3 6 0 2 -1 0\" Spacing=\"0.5 1\"", "broken Spacing"},
         {"WholeExtent=\"3 6 0 2 -1 0\" Spacing=\"0.5 x 2\"", "broken Spacing"},
         {"WholeExtent=\"3 6 0 2 -1 0\" Spacing=\"1 1 1\" Direction=\"1 0 0 0 1 0 nan 0 1\"",
-         "broken Spacing, Origin or Direction"},
+         "no orientation"},
+        {"WholeExtent=\"3 6 0 2 -1 0\" Spacing=\"1 1 1\" Direction=\"1 0 0 1 0 0 0 0 1\"",
+         "no orientation"},
+        {"WholeExtent=\"3 6 0 2 -1 0\" Spacing=\"1 inf 1\"", "broken Spacing"},
+        {"WholeExtent=\"3 6 0 2 -1 0\" Spacing=\"1 1 1\" Origin=\"nan 0 0\"", "broken Origin"},
         {"WholeExtent=\"3 2 0 2 -1 0\" Spacing=\"1 1 1\"", "empty extent"},
         {"WholeExtent=\"0 1 0 2 -1 0\" Spacing=\"1 1 1\"", "not within the WholeExtent"},
         {"WholeExtent=\"3 7 0 2 -1 0\" Spacing=\"1 1 1\"", "24 voxels in its Pieces"},
@@ -308,6 +312,11 @@ static void vti_grid(void **state) {
     }
     b = make_vti(VTI_RAW, false, true, 0, heads[0][0]);
     io_volume_options options = none;
+    options.guess = true;
+    v = must_read_volume(&b, 1, &options);
+    assert_row(&v, 1, 0, 1, 0, 2);
+    assert_true(volume_warns(&v, "--spacing gives it"));
+    io_volume_free(&v);
     options.spacing[0] = options.spacing[1] = options.spacing[2] = 3;
     v = must_read_volume(&b, 1, &options);
     assert_row(&v, 1, 0, 3, 0, 2);
@@ -445,6 +454,10 @@ static void hdf5_rules(void **state) {
     io_volume_free(&v);
     options.time_step = 0;
     must_fail_volume(&b, 1, &options, 0, "--time-step");
+    options.guess = true;
+    v = must_read_volume(&b, 1, &options);
+    assert_true(v.period == 2 && volume_warns(&v, "--time-step gives it"));
+    io_volume_free(&v);
     options.period = 80;
     options.names = "w,u,v";
     v = must_read_volume(&b, 1, &options);
@@ -466,7 +479,7 @@ static void what_is_no_volume(void **state) {
     must_fail_volume(&b, 1, NULL, 0, "not a volume");
     buffer_free(&b);
     b = make_vti(VTI_RAW, false, true, 0, NULL); /* and no line reader takes one */
-    must_fail(&b, "a.vti", NULL, "lines are read from PolyData");
+    must_fail(&b, "a.vti", NULL, "are read from PolyData");
     buffer_free(&b);
     b = make_points(true);
     must_fail(&b, "a.vtk", NULL, "lines are read from POLYDATA");
