@@ -482,7 +482,7 @@ static void what_is_no_volume(void **state) {
     must_fail(&b, "a.vti", NULL, "are read from PolyData");
     buffer_free(&b);
     b = make_points(true);
-    must_fail(&b, "a.vtk", NULL, "lines are read from POLYDATA");
+    must_fail(&b, "a.vtk", NULL, "are read from POLYDATA");
     buffer_free(&b);
     io_volume zero = {0};
     io_volume_free(&zero);
