@@ -89,7 +89,9 @@ static bool take_vertices(vmv *v) {
             return false;
     if (!io_text_is(line, "$VERT_LIST_END"))
         return io_fail(v->r, "ends too early, within its vertices; copy the file again");
-    qsort(v->ids, v->count, v->count ? sizeof *v->ids : 1, by_id);
+    if (!v->count)
+        return io_fail(v->r, "holds no tree: it has no vertices");
+    qsort(v->ids, v->count, sizeof *v->ids, by_id);
     for (size_t i = 1; i < v->count; i++)
         repeated += v->ids[i].id == v->ids[i - 1].id;
     return !repeated ||

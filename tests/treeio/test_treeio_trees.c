@@ -325,6 +325,7 @@ static void vmv_defects(void **state) {
                    "$VERT_LIST_END\n$STRANDS_LIST_BEGIN\n1 1 2\n$STRANDS_LIST_END\n",
                    "NUM_VERTS");
     refuse_text("$VERT_LIST_BEGIN\n1 0 0 0 1\n", "too early");
+    refuse_text("$VERT_LIST_BEGIN\n$VERT_LIST_END\n", "no vertices");
     refuse_text("$VERT_LIST_BEGIN\n1 0 0 0 1\n$VERT_LIST_END\n", "$STRANDS_LIST_BEGIN");
     refuse_text("$VERT_LIST_BEGIN\n1 0 0 0 1\n$VERT_LIST_END\n$STRANDS_LIST_BEGIN\n1 1 2\n",
                 "vertex '2'");
