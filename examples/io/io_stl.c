@@ -15,6 +15,8 @@ static bool has_binary_size(const io_cursor *bytes) {
 static bool is_text(const io_cursor *bytes) {
     io_cursor c = {bytes->bytes, bytes->size < 4096 ? bytes->size : 4096, 0};
     io_text word;
+    if (memchr(c.bytes, 0, c.size)) /* no text has a zero; heads of 80 bytes are filled with them */
+        return false;
     if (!io_take_word(&c, &word) || !io_text_is(word, "solid"))
         return false;
     while (io_take_word(&c, &word))

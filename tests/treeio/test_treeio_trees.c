@@ -230,6 +230,18 @@ static void swc_odd_trees_stand(void **state) {
     io_tree_free(&tree);
 }
 
+static void swc_of_six_columns(void **state) {
+    (void)state;
+    io_tree tree = tree_of_text("1 1 0 0 2 -1\n2 3 0 0 1 1\n"); /* without radius */
+    assert_true(tree.segment_count == 1 && tree.segments[0] == 0 && tree.positions[2] == 2);
+    assert_true(isnan(tree.radii[0]) && tree.node_attributes[0].data[1] == 3);
+    io_tree_free(&tree);
+    tree = tree_of_text("1 0 0 2.5 4 -1\n2 0.5 0 1 3 1\n"); /* without type */
+    assert_true(tree.segment_count == 1 && tree.segments[1] == 1 && tree.positions[3] == 0.5);
+    assert_true(tree.radii[0] == 4 && tree.node_attributes[0].data[1] == 0);
+    io_tree_free(&tree);
+}
+
 /* A node 0 may be a parent. */
 static void swc_parent_zero(void **state) {
     (void)state;
@@ -504,6 +516,7 @@ int main(void) {
         cmocka_unit_test(swc_defects),
         cmocka_unit_test(swc_cycles_are_refused),
         cmocka_unit_test(swc_odd_trees_stand),
+        cmocka_unit_test(swc_of_six_columns),
         cmocka_unit_test(swc_parent_zero),
         cmocka_unit_test(swc_of_a_million_lines),
         cmocka_unit_test(gxl_odd_files),

@@ -97,7 +97,7 @@ static buffer vmv(void) {
     for (size_t i = 0; i < TREE_NODES; i++)
         put_format(&b, "%zu\t%f\t%f\t%f\t%f\t110.000000\t\n", i + 1, tree_positions[i][0],
                    tree_positions[i][1], tree_positions[i][2], tree_radii[i]);
-    put_text(&b, "$VERT_LIST_END\n\n$STRANDS_LIST_BEGIN\n1\t1\t2\t\n2\t2\t3\n3\t2\t4\t5\n"
+    put_text(&b, "$VERT_LIST_END\n\n$STRANDS_LIST_BEGIN\n1\t1\t2\t\n2\t2\t3\n3\t5\t4\t2\n"
                  "$STRANDS_LIST_END\n\n");
     return b;
 }
@@ -293,7 +293,7 @@ double mesh_part(size_t triangle) {
 
 static buffer stl_binary(void) {
     buffer b = {0};
-    char head[80] = "solid made by a program that does not know better";
+    char head[80] = "solid facet of a program that does not know better";
     put(&b, head, 80);
     put_u32(&b, MESH_TRIANGLES);
     for (size_t i = 0; i < MESH_TRIANGLES; i++) {
