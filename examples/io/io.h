@@ -1,4 +1,5 @@
-/* Line files: reads .trk .tck .trx .tt .vtk .vtp, each also gzip-compressed; writes .tck .trk .vtp.
+/* Line files: reads .trk .tck .trx .tt .vtk .vtp .obj, each also gzip-compressed; writes .tck .trk
+ * .vtp. Vessel trees: io_tree.h; meshes: io_mesh.h; whatever a file holds: io_read.h.
  *
  *     io_lines lines = {0};
  *     io_error error;
@@ -36,7 +37,7 @@ typedef struct io_group {
 /* Lines with at least one point each, in the order of the file. All zero = no lines; valid for
  * every function here. */
 typedef struct io_lines {
-    /* "trk", "tck", "trx", "tt", "vtk" or "vtp": static text; NULL when all is zero */
+    /* "trk", "tck", "trx", "tt", "vtk", "vtp" or "obj": static text; NULL when all is zero */
     const char *format;
     /* "mm": static text. VTK files define no unit and are taken as mm */
     const char *unit;

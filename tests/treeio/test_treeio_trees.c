@@ -294,6 +294,10 @@ static void gxl_odd_files(void **state) {
     assert_true(warns(&tree, "two coordinates"));
     assert_string_equal(tree.segment_attributes[0].name, "radius");
     io_tree_free(&tree);
+    tree = tree_of_text("<gxl><graph>" NODE("a", F("1") F("2") F("3"))
+                            NODE("b", F("3") F("4")) "</graph></gxl>");
+    assert_true(tree.positions[2] == 3 && tree.positions[5] == 0);
+    io_tree_free(&tree);
     expect_warning("<gxl><graph>" NODE("a", F("1") F("2") F("3"))
                        EDGE("a", "x", "1") "</graph></gxl>",
                    "missing");
@@ -343,6 +347,21 @@ static void vmv_defects(void **state) {
                 "vertex '2'");
     refuse_text("$VERT_LIST_BEGIN\n1 0 0 0\n$VERT_LIST_END\n", "line 2");
     refuse_text("$VERT_LIST_BEGIN\n1 0 inf 0 1\n$VERT_LIST_END\n", "finite");
+}
+
+/* Strands tell no direction: the root is the first vertex of the first one. A vertex on no strand
+ * is none, and two at one place are one. */
+static void vmv_strands(void **state) {
+    (void)state;
+    io_tree tree = tree_of_text("$VERT_LIST_BEGIN\n1 0 0 0 1\n2 1 0 0 1\n3 2 0 0 1\n4 9 9 9 1\n"
+                                "5 1 0 0 1\n$VERT_LIST_END\n"
+                                "$STRANDS_LIST_BEGIN\n1 2 1\n2 3 5\n$STRANDS_LIST_END\n");
+    io_vessel vessel = build(&tree);
+    assert_int_equal(vessel.tree.info.nodes, 3);
+    assert_int_equal(vessel.tree.info.roots, 1);
+    assert_int_equal(vessel.tree.roots[0], 1);
+    io_vessel_free(&vessel);
+    io_tree_free(&tree);
 }
 
 /* ---- HDF5 ------------------------------------------------------------------------------------ */
@@ -522,6 +541,7 @@ int main(void) {
         cmocka_unit_test(gxl_odd_files),
         cmocka_unit_test(gxl_radii),
         cmocka_unit_test(vmv_defects),
+        cmocka_unit_test(vmv_strands),
         cmocka_unit_test(h5_loops_are_kept),
         cmocka_unit_test(h5_triangle_is_a_loop),
         cmocka_unit_test(h5_defects),
