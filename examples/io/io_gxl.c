@@ -128,7 +128,7 @@ static void XMLCALL on_begin(void *user, const XML_Char *name, const XML_Char **
     bool good = true;
     g->depth++;
     g->in_number = false; /* numbers hold no tags */
-    if (g->depth == 1 && strcmp(name, "gxl"))
+    if (g->depth == 1 && strcmp(name, "gxl") != 0)
         good = io_fail(g->r, "is not a GXL file: its root is <%.40s>", name);
     else if (!strcmp(name, "node") && !g->in_node && !g->in_edge)
         good = begin_node(g, attributes);

@@ -27,24 +27,22 @@ static bool build_lines(io_reader *r, const io_piece *pieces, size_t count) {
 
 /* Names of radii, the best first. */
 typedef struct radius_name {
-    const char *name;
-    bool of_points;
-    double factor;    /* to a radius */
-    bool centimetres; /* VMTK's name, used by SimVascular in cm */
-    const char *habit;
+    const char *name, *habit;    /* habit: the unit that files of this make have; NULL = none */
+    double factor;               /* to a radius */
+    bool of_points, centimetres; /* centimetres: SimVascular uses the name too, in cm */
 } radius_name;
 
 // clang-format off
 static const radius_name radius_names[] = {
-    {"MaximumInscribedSphereRadius", true, 1, true, NULL},
-    {"radius",    true,  1,   true,  NULL},
-    {"radii",     true,  1,   true,  NULL},
-    {"diameter",  true,  0.5, false, "um"}, /* vascpy */
-    {"diameters", true,  0.5, false, "um"},
-    {"radius",    false, 1,   false, "um"},
-    {"radii",     false, 1,   false, "um"},
-    {"diameter",  false, 0.5, false, "um"},
-    {"diameters", false, 0.5, false, "um"},
+    {"MaximumInscribedSphereRadius", NULL, 1, true, true},
+    {"radius",    NULL, 1,   true,  true},
+    {"radii",     NULL, 1,   true,  true},
+    {"diameter",  "um", 0.5, true,  false}, /* vascpy */
+    {"diameters", "um", 0.5, true,  false},
+    {"radius",    "um", 1,   false, false},
+    {"radii",     "um", 1,   false, false},
+    {"diameter",  "um", 0.5, false, false},
+    {"diameters", "um", 0.5, false, false},
 };
 // clang-format on
 enum { RADIUS_NAMES = sizeof radius_names / sizeof radius_names[0] };

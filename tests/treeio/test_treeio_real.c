@@ -85,8 +85,8 @@ static void real_trees(void **state) {
     (void)state;
     for (size_t i = 0; !absent() && i < sizeof trees / sizeof trees[0]; i++) {
         char path[1024];
-        io_tree tree;
-        io_vessel vessel;
+        io_tree tree = {0};
+        io_vessel vessel = {0};
         io_error error;
         snprintf(path, sizeof path, "%s/trees/%s", root, trees[i].name);
         print_message("%s\n", trees[i].name);

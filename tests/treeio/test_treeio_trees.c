@@ -179,7 +179,8 @@ static void units_are_guessed_by_size(void **state) {
     b = make_tree_sample("vmtk.vtk");
     char *radii = strstr((char *)b.data, "default\n");
     assert_non_null(radii);
-    memcpy(radii + 8, ".2 .2 .2 .2 .2 .2\n", 18);
+    b.size = (size_t)(radii + 8 - (char *)b.data);
+    put_text(&b, ".2 .2 .2 .2 .2 .2\n");
     tree = read_tree(&b, NULL, NULL);
     assert_string_equal(tree.unit, "cm"); /* SimVascular's */
     io_tree_free(&tree);
