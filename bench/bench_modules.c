@@ -60,6 +60,7 @@ static void add_lines(bench_floors *floors) {
     }
     row->name = "floor_lines";
     row->shader = "floor_lines";
+    memset(row->when, 0, sizeof row->when); /* beside whichever row draws the lines */
     memset(row->writes, 0, sizeof row->writes);
     row->writes[0] = reference("floor_color", LAO_LOAD_CLEAR);
     row->writes[1] = reference("floor_zbuffer", LAO_LOAD_CLEAR);
@@ -71,6 +72,7 @@ static void add_taps(bench_floors *floors, const char *name, const char *second)
     memset(row, 0, sizeof *row);
     row->name = name;
     row->shader = name;
+    row->stage = LAO_STAGE_SHADE;
     row->scope = LAO_SCOPE_PER_SET;
     row->when[0].name = "occlusion";
     row->when[0].compare = '=';

@@ -34,8 +34,8 @@ typedef struct cli_flow_options {
     const char *names, *mask, *unit, *axes; /* see io_volume_options */
     double spacing[3], time_step, period;
     uint32_t seeds, seed, max_points;
-    double step, tolerance; /* ms, mm */
-    double threshold;       /* m/s; negative: none is given */
+    double at, step, tolerance; /* ms, ms, mm */
+    double threshold;           /* m/s; negative: none is given */
     const char *method, *span, *attributes;
     bool streamlines;
 } cli_flow_options;
@@ -45,9 +45,10 @@ typedef struct cli_options {
     cli_source *files; /* owned */
     uint32_t file_count;
     const char *scene, *out, *dump, *timings, *backend, *camera, *save_camera, *view;
-    uint32_t lines, frames; /* 0: not given */
+    uint32_t lines, frames, fps; /* 0: not given */
     uint32_t size[2];
-    double time, background[4];
+    double time; /* ms; NaN: not given */
+    double background[4];
     bool ortho, json, help;
     cli_flow_options flow;
     const char *flow_flag; /* the last flag in `flow` that was given, or NULL */

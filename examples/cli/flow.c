@@ -51,7 +51,7 @@ bool cli_read_volume(const cli_options *options, const cli_source *sources, uint
     o.unit = flow->unit;
     memcpy(o.spacing, flow->spacing, sizeof o.spacing);
     o.time_step = flow->time_step;
-    o.period = flow->period;
+    o.period = flow->period > 0 ? flow->period : (double)sources[count - 1].settings.period;
     o.along_grid = flow->axes && strcmp(flow->axes, "grid") == 0;
     o.guess = guess;
     o.progress = on_progress;
@@ -134,12 +134,14 @@ static flow4d_trace_settings settings_of(const cli_options *options, const io_vo
     s.step = flow->step;
     s.tolerance = flow->tolerance;
     s.method = flow->method && strcmp(flow->method, "dopri") == 0 ? FLOW4D_DOPRI : FLOW4D_RK4;
+    if (!flow->span && (!isnan(options->time) || options->frames))
+        s.span = FLOW4D_SPAN_LOOP; /* each line has a seam of its own, where its trail fades */
     if (flow->span)
         s.span = strcmp(flow->span, "loop") == 0   ? FLOW4D_SPAN_LOOP
                  : strcmp(flow->span, "free") == 0 ? FLOW4D_SPAN_FREE
                                                    : FLOW4D_SPAN_CYCLE;
     s.streamlines = flow->streamlines;
-    s.time = options->time;
+    s.time = flow->at;
     s.attributes = (strcmp(more, "curvature") != 0 && *more ? FLOW4D_VORTICITY : 0u) |
                    (strcmp(more, "vorticity") != 0 && *more ? FLOW4D_CURVATURE : 0u);
     return s;

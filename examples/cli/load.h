@@ -22,6 +22,7 @@ typedef struct cli_scene {
     double origin[3];
     float direction[3], up[3]; /* of the automatic camera */
     double beat[2];            /* first and last time (ms); equal: none */
+    double period;             /* ms: of the first set that repeats, else from first to last time */
 } cli_scene;
 
 /* Loads what the options name. False: reported, nothing to free. */

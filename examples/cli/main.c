@@ -55,6 +55,8 @@ static const command_row commands[] = {
      "  lineao render bundle.trk -o out.png --width 0.3 --view sagittal\n"
      "  lineao render a.trk --color '#d08040' b.tck --width 1 -o two.png   each FILE its own look\n"
      "  lineao render bundle.trk --color fa --colormap inferno -o fa.png\n"
+     "  lineao render flow.vtp --time 120 -o systole.png               trails around 120 ms\n"
+     "  lineao render flow.vtp --frames 200 --period 833 -o beat.mp4   one heart beat, in ffmpeg\n"
      "  lineao render --preset classic --strength 2 -o classic.png     settings are flags\n"
      "  lineao render --ssaa 1 --dump frame.exr --backend vk           every image as numbers\n"
      "  lineao render flow.h5 --color speed --seeds 5000 -o flow.png   traces the volume first\n",
@@ -71,7 +73,7 @@ static const command_row commands[] = {
      "  lineao flow u.nii v.nii w.nii --unit cm/s -o uvw.tck   one file for each component\n"
      "  lineao flow t_*.vti --period 800 -o beat.vtp           one file for each time step\n"
      "  lineao flow 4d.h5 --names vx,vy,vz,seg --spacing 2,2,3 --time-step 40 -o named.vtp\n"
-     "  lineao flow 4d.h5 --streamlines --time 120 -o peak.vtp\n"
+     "  lineao flow 4d.h5 --streamlines --at 120 -o peak.vtp\n"
      "  lineao render aorta.vtp --color speed -o aorta.png     look at them\n",
      flow_about},
     {"bench", 0, NULL, "[--json]", "time every pass and frame of fixed scenes on both backends", "",

@@ -300,10 +300,13 @@ static void test_info_mesh(void **state) {
 
 /* Every flag that changes the picture does, and those that should not do not. */
 static void test_flags(void **state) {
-    static const char *const same[] = {"--occlusion off",      "--time 0",
+    static const char *const same[] = {"--occlusion off",      "--time 400 --trail none",
                                        "--backend vk",         "--set width=0.5",
                                        "--background #f4f4f2", "--scene aorta"};
-    static const char *const other[] = {"--width 2",
+    static const char *const other[] = {"--time 400",
+                                        "--trail highlight --time 400",
+                                        "--halo none",
+                                        "--width 2",
                                         "--set width=2",
                                         "--color line",
                                         "--color direction",
@@ -380,6 +383,76 @@ static void test_sequence(void **state) {
     assert_int_equal(access("seq_0001.png", F_OK), 0);
     assert_int_equal(access("seq-01.x.png", F_OK), 0);
     assert_int_equal(access("seq.png", F_OK), -1);
+}
+
+/* Frame k of N is the picture of the first time plus k parts of the period. */
+static void test_times(void **state) {
+    (void)state;
+    expect_ok(RUN("render " PLAIN "--frames 4 --period 800 --time 100 -o beat.png"));
+    expect_ok(RUN("render " PLAIN "--period 800 --time 300 -o frame.png"));
+    assert_true(same_pictures("beat_0001.png", "frame.png"));
+    assert_false(same_pictures("beat_0000.png", "frame.png"));
+    expect_ok(RUN("render " PLAIN "--period 800 --time 1100 -o frame.png"));
+    assert_true(same_pictures("beat_0001.png", "frame.png"));
+    expect_fault(RUN("render " PLAIN "--scene helix --time 5 -o none.png"), 1, "time");
+    expect_fault(RUN("render " PLAIN "--scene helix --frames 2 -o none.png"), 1, "time");
+    expect_fault(RUN("render " PLAIN "--scene helix --trail taper -o none.png"), 1, "time");
+    assert_int_equal(access("none.png", F_OK), -1);
+    expect_fault(RUN("render " PLAIN "-o v.mp4"), 2, "--frames");
+    expect_fault(RUN("render " PLAIN "--fps 9 -o v.png"), 2, "--fps");
+    expect_fault(RUN("render " PLAIN "--frames 2 --background 0,0,0,0 -o v.gif"), 2,
+                 "--background");
+}
+
+/* A stand-in for ffmpeg, in the folder that alone is in PATH. */
+static void fake_ffmpeg(const char *script) {
+    FILE *file = fopen("bin/ffmpeg", "w");
+    assert_non_null(file);
+    fprintf(file, "#!/bin/sh\n%s\n", script);
+    assert_int_equal(fclose(file), 0);
+    assert_int_equal(chmod("bin/ffmpeg", 0755), 0);
+}
+
+/* Nothing but these files lies here: no half video, no temporary file. */
+static int files_of_video(void) {
+    struct dirent *entry;
+    DIR *folder = opendir(".");
+    int count = 0;
+    assert_non_null(folder);
+    while ((entry = readdir(folder)) != NULL)
+        count += strncmp(entry->d_name, "film", 4) == 0;
+    closedir(folder);
+    return count;
+}
+
+static void test_videos(void **state) {
+    char *before = strdup(getenv("PATH") ? getenv("PATH") : ""), *here = getcwd(NULL, 0),
+         path[4096];
+    struct stat status;
+    (void)state;
+    mkdir("bin", 0755);
+    assert_true(snprintf(path, sizeof path, "%s/bin", here) < (int)sizeof path);
+    setenv("PATH", path, 1);
+    expect_fault(RUN("render " PLAIN "--frames 2 -o film.mp4"), 1,
+                 "film.mp4: ffmpeg is not in PATH");
+    assert_int_equal(files_of_video(), 0);
+    fake_ffmpeg("for last; do :; done\n/bin/cat >\"$last\"");
+    expect_ok(RUN("render " PLAIN "--frames 3 -o film.webm"));
+    assert_int_equal(stat("film.webm", &status), 0);
+    assert_int_equal(status.st_size, 3 * 3 * 96 * 64);
+    assert_int_equal(remove("film.webm"), 0);
+    fake_ffmpeg("echo no such codec >&2\nexit 1");
+    expect_fault(RUN("render " PLAIN "--frames 40 -o film.mp4"), 1,
+                 "film.mp4: ffmpeg: no such codec");
+    assert_int_equal(files_of_video(), 0);
+    fake_ffmpeg("for last; do :; done\n/bin/cat >\"$last\"\nexit 3");
+    expect_fault(RUN("render " PLAIN "--frames 2 -o film.gif"), 1, "film.gif: ffmpeg failed");
+    expect_fault(program_start(program, true, "render " PLAIN "--frames 2 -o film.gif"), 1,
+                 "interrupted");
+    assert_int_equal(files_of_video(), 0);
+    setenv("PATH", before, 1);
+    free(before);
+    free(here);
 }
 
 static void test_timings(void **state) {
@@ -540,6 +613,7 @@ int main(int argc, char **argv) {
         cmocka_unit_test(test_info_tree), cmocka_unit_test(test_info_mesh),
         cmocka_unit_test(test_flags),     cmocka_unit_test(test_flags_of_files),
         cmocka_unit_test(test_camera),    cmocka_unit_test(test_sequence),
+        cmocka_unit_test(test_times),     cmocka_unit_test(test_videos),
         cmocka_unit_test(test_timings),   cmocka_unit_test(test_dump),
         cmocka_unit_test(test_compare),   cmocka_unit_test(test_both_backends),
         cmocka_unit_test(test_real_file), cmocka_unit_test(test_nothing_left),

@@ -198,7 +198,7 @@ static void options_change_what_is_traced(void **state) {
         double step;
     } cases[] = {
         {"--method dopri --tolerance 1e-6 --step 8", 8},
-        {"--streamlines --time 100 --step 2", 2},
+        {"--streamlines --at 100 --step 2", 2},
         {"--span loop --step 10", 10},
         {"--span free --max-points 50 --step 5", 5},
     };
@@ -345,22 +345,39 @@ static void info_describes_volumes(void **state) {
     program_free(&run);
 }
 
+static bool same_pictures(const char *first, const char *second) {
+    uint32_t size[4];
+    uint8_t *a, *b;
+    assert_true(image_read_png(first, 3, &size[0], &size[1], &a, NULL));
+    assert_true(image_read_png(second, 3, &size[2], &size[3], &b, NULL));
+    bool same = size[0] == size[2] && size[1] == size[3] &&
+                memcmp(a, b, (size_t)size[0] * size[1] * 3) == 0;
+    free(a);
+    free(b);
+    return same;
+}
+
 /* Rendering a volume is tracing it and rendering the lines; colours too. */
 static void render_traces(void **state) {
     (void)state;
-    uint32_t size[4];
-    uint8_t *a, *b;
     expect_ok(RUN("flow " SERIES "--period 800 --mask disk --seeds 200 -o flow_f.vtp"));
     expect_ok(RUN("render flow_f.vtp --color speed " SMALL "-o flow_f.png"));
     expect_ok(RUN("render " SERIES "--color speed --period 800 --mask disk --seeds 200 " SMALL
                   "-o flow_g.png"));
-    assert_true(image_read_png("flow_f.png", 3, &size[0], &size[1], &a, NULL));
-    assert_true(image_read_png("flow_g.png", 3, &size[2], &size[3], &b, NULL));
-    assert_true(size[0] == size[2] && size[1] == size[3]);
-    assert_memory_equal(a, b, (size_t)size[0] * size[1] * 3);
-    free(a);
-    free(b);
+    assert_true(same_pictures("flow_f.png", "flow_g.png"));
     expect_fault(RUN("render flow_f.vtp --seeds 5 " SMALL "-o flow_f.png"), 1, "no FILE is one");
+}
+
+/* The period of the volume is that of its trails. */
+static void trails_repeat(void **state) {
+    static const char *const times[3] = {"100", "900", "400"};
+    (void)state;
+    for (int i = 0; i < 3; i++)
+        expect_ok(RUN("render " SERIES "--time-step 200 --mask disk --seeds 100 --time %s " SMALL
+                      "-o flow_t%d.png",
+                      times[i], i));
+    assert_true(same_pictures("flow_t0.png", "flow_t1.png"));
+    assert_false(same_pictures("flow_t0.png", "flow_t2.png"));
 }
 
 #ifdef LINEAO_HAVE_HDF5
@@ -446,6 +463,7 @@ int main(int argc, char **argv) {
         cmocka_unit_test(thresholds_choose_the_inside),
         cmocka_unit_test(info_describes_volumes),
         cmocka_unit_test(render_traces),
+        cmocka_unit_test(trails_repeat),
 #ifdef LINEAO_HAVE_HDF5
         cmocka_unit_test(hdf5_needs_what_it_lacks),
 #endif
