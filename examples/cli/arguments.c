@@ -60,7 +60,7 @@ static const flag_row flags[] = {
     {"--tolerance", NULL, "MM", FLAG_ABOVE, TRACE, ALL(flow.tolerance), NULL, "error of a part of a step, for dopri (0.0001)"},
     {"--attributes", NULL, "NAME", FLAG_CHOICE, TRACE, ALL(flow.attributes), "vorticity|curvature|all", "more per point: vorticity (1/s), curvature (1/mm) or all"},
     {"--names", NULL, "U,V,W[,MASK]", FLAG_TEXT, ANY, ALL(flow.names), NULL, "arrays of a volume: three components, or one vector: VELOCITY[,MASK]"},
-    {"--unit", NULL, "NAME", FLAG_CHOICE, ANY, ALL(flow.unit), "m/s|cm/s|mm/s", "of a volume's velocities: m/s (default), cm/s or mm/s"},
+    {"--unit", NULL, "NAME", FLAG_CHOICE, ANY & ~CLI_INFO, ALL(flow.unit), "m/s|cm/s|mm/s", "of a volume's velocities: m/s (default), cm/s or mm/s"},
     {"--axes", NULL, "mm|grid", FLAG_CHOICE, ANY, ALL(flow.axes), "mm|grid", "of a volume's velocities: those of its mm (default) or of its voxels"},
     {"--spacing", NULL, "MM[,MM,MM]", FLAG_SPACING, ANY, ALL(flow.spacing), NULL, "size of a volume's voxels, where it tells none or a wrong one"},
     {"--time-step", NULL, "MS", FLAG_ABOVE, ANY, ALL(flow.time_step), NULL, "between a volume's frames"},
@@ -88,6 +88,7 @@ static const flag_row flags[] = {
     {"--every", NULL, "N", FLAG_COUNT, TRACE, FILE_(every), NULL, "keep each N-th line"},
     {"--min-length", NULL, "MM", FLAG_LENGTH, TRACE, FILE_(min_length), NULL, "drop shorter lines (files: none; of a volume: shorter than two voxels)"},
     {"--bundle", NULL, "NAME", FLAG_TEXT, BOTH, FILE_(bundle), NULL, "keep the lines of this group (TRX group, TT cluster)"},
+    {"--unit", NULL, "NAME", FLAG_CHOICE, CLI_INFO, FILE_(unit), "mm|cm|um|m|m/s|cm/s|mm/s", "of trees and meshes: mm, cm, um or m, whatever the file tells or seems to be in; of volumes: m/s, cm/s or mm/s"},
     {"--set", NULL, "NAME=VALUE", FLAG_ASSIGN, BOTH, FILE_(settings), NULL, "a setting, as its own flag does"},
 };
 // clang-format on
@@ -510,7 +511,7 @@ void cli_print_flags(cli_command_bit command) {
     print_rows(command, false, false, "Flags");
     print_rows(command, false, true, "Velocity volumes");
     print_rows(command, true, false,
-               "Lines: before the first FILE for all FILEs, after a FILE for it alone");
+               "Of a FILE: before the first FILE for all FILEs, after a FILE for it alone");
     if (command & CLI_COMPARE || command & CLI_RENDER)
         print_settings();
 }

@@ -26,6 +26,7 @@ typedef struct cli_source {
     uint32_t every;
     double min_length; /* mm; negative: none is given */
     const char *bundle;
+    const char *unit; /* of trees and meshes; NULL: as the file tells, or guessed */
 } cli_source;
 
 /* How velocity volumes are read and traced. Numbers are 0, texts NULL where nothing is given. */

@@ -16,25 +16,34 @@ static bool on_progress(void *user, uint64_t done, uint64_t total) {
     return cli_interrupted();
 }
 
-bool cli_read_file(const cli_source *source, io_lines *out) {
+bool cli_read(const cli_source *source, unsigned wanted, io_contents *out) {
     cli_progress progress = {"reading", source->path, -1};
     io_options options;
     memset(&options, 0, sizeof options);
     options.every = source->every;
     options.min_length = (float)fmax(source->min_length, 0);
     options.bundle = source->bundle;
+    options.unit = source->unit;
     options.progress = on_progress;
     options.user = &progress;
     io_error error;
-    bool ok = io_read_lines(source->path, &options, out, &error);
+    bool ok = io_read(source->path, wanted, &options, out, &error);
     cli_progress_end(&progress);
     if (!ok)
         return cli_interrupted() ? cli_go_on() : cli_fail("%s: %s", source->path, error.text);
     if (!cli_go_on()) {
-        io_lines_free(out);
+        io_contents_free(out);
         return false;
     }
     return true;
+}
+
+bool cli_read_file(const cli_source *source, io_lines *out) {
+    io_contents contents;
+    bool ok = cli_read(source, IO_LINES, &contents);
+    if (ok)
+        *out = contents.lines;
+    return ok;
 }
 
 /* ---- embedded scenes -------------------------------------------------------------------- */

@@ -3,7 +3,7 @@
 #define LINEAO_CLI_LOAD_H
 
 #include "arguments.h"
-#include "io.h"
+#include "io_read.h"
 
 typedef struct cli_set {
     const cli_source *source;
@@ -34,6 +34,8 @@ void cli_scene_warn(const cli_scene *scene);
 
 /* Reads a file with a progress bar; Ctrl-C cancels. False: reported. */
 bool cli_read_file(const cli_source *source, io_lines *out);
+/* The same for any kinds of content (IO_LINES, ...). */
+bool cli_read(const cli_source *source, unsigned wanted, io_contents *out);
 
 /* Colours a set as its source says. False: reported. */
 bool cli_colour(cli_set *set);

@@ -41,9 +41,12 @@ static const char flow_about[] =
     "any number of threads (LINEAO_THREADS; as many as the machine has).\n";
 
 static const command_row commands[] = {
-    {"info", CLI_INFO, cli_info, "FILE... [--json]", "what is in line files and velocity volumes",
+    {"info", CLI_INFO, cli_info, "FILE... [--json]",
+     "what is in files of lines, vessel trees, meshes and velocity volumes",
      "  lineao info bundle.trk                 lines, points, box, attributes, groups\n"
      "  lineao info *.trx --json               the same for scripts\n"
+     "  lineao info brain.swc aorta.stl        nodes, roots, radii; triangles, holes\n"
+     "  lineao info pulmonary.vtp --unit cm    for files that tell no unit\n"
      "  lineao info flow.h5                    a volume: voxels, frames, period, speeds, mask\n",
      NULL},
     {"render", CLI_RENDER, cli_render, "[FILE [FLAG...]]... -o out.png",
@@ -98,9 +101,9 @@ static void print_help(void) {
     printf("\nExamples\n");
     for (int i = 0; i < COMMANDS; i++)
         printf("%s", commands[i].examples);
-    printf("\nFiles: lines .trk .tck .trx .tt .vtk .vtp, volumes .nii .vti .vtk .h5; but for .h5 "
-           "also\n"
-           "gzip-compressed.\n"
+    printf("\nFiles, but for .h5 also gzip-compressed: lines .trk .tck .trx .tt .vtk .vtp .obj;\n"
+           "vessel trees .swc .gxl .h5 .vmv .vtk .vtp; meshes .stl .ply .obj .vtk .vtp;\n"
+           "velocity volumes .nii .vti .vtk .h5.\n"
            "Flags of a command: lineao COMMAND --help\n");
 }
 

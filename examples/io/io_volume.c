@@ -1,6 +1,7 @@
 /* Velocity volumes: finds the format of each file, the velocity and the mask among their arrays,
  * and puts them together. */
 #include "io_grid.h"
+#include "io_hdf5.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -685,7 +686,7 @@ bool io_read_volume_memory(const io_source *sources, uint32_t count,
 }
 
 bool io_is_volume(const char *path) {
-    uint8_t head[8192];
+    uint8_t head[65536];
     struct stat info;
     if (stat(path, &info) || !S_ISREG(info.st_mode))
         return false;                 /* of a pipe nothing may be taken away */

@@ -184,7 +184,7 @@ bool io_open_points(io_reader *r, io_cursor *bytes, io_grid *grid) {
     if (!set_grid(r, &v.image, !of_points && v.array_count, grid))
         return false;
     for (size_t i = 0; i < v.array_count; i++) {
-        const io_legacy_array *a = &v.arrays[i];
+        const io_array *a = &v.arrays[i];
         if (a->of_points != (of_points > 0))
             continue;
         if (a->values.count != io_grid_voxels(grid) || a->values.components > IO_MAX_COMPONENTS) {
