@@ -66,9 +66,8 @@ static void flow_release(void *user, void *block, size_t size) {
 typedef struct flow_row {
     const char *source; /* "grid": a measurement's voxels; "function": formulas */
     const char *method;
-    uint32_t threads;
-    double seconds; /* the least of all rounds */
-    uint32_t points;
+    uint32_t threads, points;
+    double seconds;      /* the least of all rounds */
     size_t result, peak; /* bytes */
 } flow_row;
 

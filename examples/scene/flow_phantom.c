@@ -196,7 +196,7 @@ double flow_phantom_wall(const double position[3]) {
 /* A lattice of these voxels around the vessel, one voxel wider on each side. */
 static void lattice(const double spacing[3], flow4d_field *field) {
     static const double low[3] = {-45, -38, -112}, high[3] = {54, 45, 46};
-    for (int a = 0; a < 3; a++) {
+    for (size_t a = 0; a < 3; a++) {
         field->size[a] = (uint32_t)ceil((high[a] - low[a]) / spacing[a]) + 2;
         field->to_world[5 * a] = spacing[a];
         field->to_world[4 * a + 3] = low[a] - 0.5 * spacing[a];

@@ -88,7 +88,7 @@ void flow_lattice(flow4d_field *field, uint32_t x, uint32_t y, uint32_t z, doubl
     field->size[0] = x;
     field->size[1] = y;
     field->size[2] = z;
-    for (int a = 0; a < 3; a++) {
+    for (size_t a = 0; a < 3; a++) {
         field->to_world[5 * a] = edge;
         field->to_world[4 * a + 3] = origin;
     }

@@ -30,7 +30,7 @@ int main(void) {
     memset(&field, 0, sizeof field);
     if (fread(head, 4, 5, stdin) != 5 || fread(scale, 8, 7, stdin) != 7)
         return fail("no header");
-    for (int a = 0; a < 3; a++) {
+    for (size_t a = 0; a < 3; a++) {
         field.size[a] = head[a];
         field.to_world[5 * a] = scale[a];
         field.to_world[4 * a + 3] = scale[3 + a];

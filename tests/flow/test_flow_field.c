@@ -23,7 +23,7 @@ static double uniform(uint32_t *state) {
 
 /* v = m (x, 1), rows of a 3x4 matrix */
 static void linear(const double m[12], const double p[3], double v[3]) {
-    for (int i = 0; i < 3; i++)
+    for (size_t i = 0; i < 3; i++)
         v[i] = m[4 * i] * p[0] + m[4 * i + 1] * p[1] + m[4 * i + 2] * p[2] + m[4 * i + 3];
 }
 
@@ -35,7 +35,8 @@ enum { X = 7, Y = 5, Z = 6, FRAMES = 4, VOXELS = X * Y * Z };
 static void fill(const flow4d_sampler *s, float *velocity, const double scale[FRAMES]) {
     for (int f = 0; f < FRAMES; f++) {
         for (int i = 0; i < VOXELS; i++) {
-            double g[3] = {i % X, i / X % Y, i / (X * Y)}, p[3], v[3];
+            int row = i / X, slice = i / (X * Y);
+            double g[3] = {i % X, row % Y, slice}, p[3], v[3];
             flow4d_to_world(s, g, p);
             linear(slopes, p, v);
             for (int c = 0; c < 3; c++)
@@ -317,14 +318,14 @@ static void the_maximum_is_over_time(void **state) {
     for (int i = 0; i < 3 * VOXELS * FRAMES; i++)
         velocity[i] = (float)uniform(&seed) - 0.5f;
     velocity[0] = NAN;
-    for (int f = 0; f < FRAMES; f++)
+    for (size_t f = 0; f < FRAMES; f++)
         velocity[3 * (f * VOXELS + 1)] = f % 2 ? NAN : INFINITY;
     assert_int_equal(flow4d_temporal_maximum(&h.host, &field, values), LAO_OK);
     assert_true(values[1] == 0.0f);
     double greatest = 0;
-    for (int i = 0; i < VOXELS; i++) {
+    for (size_t i = 0; i < VOXELS; i++) {
         float expected = 0;
-        for (int f = 0; f < FRAMES; f++) {
+        for (size_t f = 0; f < FRAMES; f++) {
             const float *v = velocity + 3 * (f * VOXELS + i);
             double speed = sqrt((double)v[0] * (double)v[0] + (double)v[1] * (double)v[1] +
                                 (double)v[2] * (double)v[2]);
@@ -419,7 +420,7 @@ static void a_box_projects_to_its_outline(void **state) {
 static lao_camera reword(const lao_camera *camera, uint32_t flags) {
     lao_camera c = *camera;
     c.flags = flags;
-    for (int col = 0; col < 4; col++) {
+    for (size_t col = 0; col < 4; col++) {
         float *p = &c.projection[4 * col];
         if (flags & LAO_CAMERA_ZERO_TO_ONE)
             p[2] = 0.5f * (p[2] + p[3]);
@@ -449,15 +450,16 @@ static void conventions_agree(void **state) {
         for (uint32_t flags = 0; flags < 8; flags++) {
             lao_camera d = reword(&c, flags);
             float *image = project(&volume, &d, 80, 60);
-            size_t best = 0;
-            for (size_t i = 0; i < 80 * 60; i++)
+            int best = 0;
+            for (int i = 0; i < 80 * 60; i++)
                 best = image[i] > image[best] ? i : best;
+            int column = best % 80, row = best / 80;
             double x = kind ? 2.0 * 3 / 52 : 3.0 / 20, y = kind ? 2.0 * 2 / 52 : 2.0 / 20;
             if (kind == 2) {
                 assert_true(image[best] == 0.0f);
             } else {
-                assert_true(fabs((double)(best % 80) + 0.5 - 40 * (1 + x)) < 1.1);
-                assert_true(fabs((double)(best / 80) + 0.5 - 30 * (1 + y)) < 1.1);
+                assert_true(fabs(column + 0.5 - 40 * (1 + x)) < 1.1);
+                assert_true(fabs(row + 0.5 - 30 * (1 + y)) < 1.1);
                 assert_true(image[best] > 0.5f && image[best] <= 2.0f); /* rays pass beside it */
             }
             free(image);
@@ -521,8 +523,8 @@ static void resampling_keeps_values(void **state) {
     flow4d_sampler_make(NULL, &target, &b);
     size_t inside = 0;
     for (size_t i = 0; i < voxels; i += 7) {
-        double g[3] = {(double)(i % target.size[0]), (double)(i / target.size[0] % target.size[1]),
-                       (double)(i / target.size[0] / target.size[1])};
+        size_t row = i / target.size[0], slice = row / target.size[1];
+        double g[3] = {(double)(i % target.size[0]), (double)(row % target.size[1]), (double)slice};
         double p[3], v[3], w[3];
         flow4d_to_world(&b, g, p);
         assert_int_equal(mask[i], flow4d_inside(&a, p, FLOW4D_MASK_NEAREST));

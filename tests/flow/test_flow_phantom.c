@@ -172,12 +172,12 @@ static void the_box_holds_the_vessel(void **state) {
     double g[3], p[3];
     uint32_t n[3] = {s.field.size[0], s.field.size[1], s.field.size[2]}, checked = 0;
     for (int face = 0; face < 6; face++) {
-        for (double u = 0; u <= 1; u += 0.01) {
-            for (double w = 0; w <= 1; w += 0.01) {
+        for (int u = 0; u <= 100; u++) {
+            for (int w = 0; w <= 100; w++) {
                 int a = face / 2, b = (a + 1) % 3, c = (a + 2) % 3;
                 g[a] = face % 2 ? n[a] - 0.5 : -0.5;
-                g[b] = u * n[b] - 0.5;
-                g[c] = w * n[c] - 0.5;
+                g[b] = 0.01 * u * n[b] - 0.5;
+                g[c] = 0.01 * w * n[c] - 0.5;
                 flow4d_to_world(&s, g, p);
                 assert_false(s.field.inside_at(NULL, p));
                 checked++;
@@ -203,7 +203,7 @@ static void lines_follow_the_vessel(void **state) {
     for (uint32_t i = 0; i < lines.line_count; i++) {
         uint32_t ends[2] = {lines.offsets[i], lines.offsets[i + 1] - 1};
         for (int k = 0; k < 2 && ends[1] - ends[0] < 198; k++) {
-            const float *p = lines.points + 3 * ends[k];
+            const float *p = lines.points + 3 * (size_t)ends[k];
             double cut = fmin(fabs((double)p[2] + 92), fabs((double)p[2] + 112));
             double t = (double)lines.times[ends[k]];
             walls += t > 5 && t < 828 && cut > 12; /* at most one step from an open end */
@@ -232,9 +232,9 @@ static void the_wall_is_a_surface(void **state) {
     flow4d_surface_settings settings = {1, 0};
     assert_non_null(values);
     for (size_t i = 0; i < count; i++) {
-        double g[3] = {(double)(i % s.field.size[0]),
-                       (double)(i / s.field.size[0] % s.field.size[1]),
-                       (double)(i / s.field.size[0] / s.field.size[1])};
+        size_t row = i / s.field.size[0], slice = row / s.field.size[1];
+        double g[3] = {(double)(i % s.field.size[0]), (double)(row % s.field.size[1]),
+                       (double)slice};
         double p[3];
         flow4d_to_world(&s, g, p);
         values[i] = s.field.inside_at(NULL, p) ? (float)flow_phantom_wall(p)

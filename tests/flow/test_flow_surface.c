@@ -167,8 +167,9 @@ static double shape(int which, double x, double y, double z) {
 
 static flow4d_volume make_shape(int which) {
     for (int i = 0; i < S * S * S; i++) {
-        double x = i % S - (S - 1) / 2.0, y = i / S % S - (S - 1) / 2.0;
-        values[i] = (float)shape(which, x, y, i / (S * S) - (S - 1) / 2.0);
+        int row = i / S, slice = i / (S * S);
+        double half = (S - 1) / 2.0;
+        values[i] = (float)shape(which, i % S - half, row % S - half, slice - half);
     }
     return make_volume(S, S, S, values, NULL);
 }
@@ -216,9 +217,9 @@ static void vertices_lie_on_the_crossing(void **state) {
         flow4d_surface_settings s = {1, 0};
         flow4d_surface surface;
         double edge[3] = {2, 3, mirrored ? -0.5 : 0.5};
-        for (int a = 0; a < 3; a++) {
+        for (size_t a = 0; a < 3; a++) {
             volume.to_world[5 * a] = edge[a];
-            volume.to_world[4 * a + 3] = 10.0 * a;
+            volume.to_world[4 * a + 3] = 10.0 * (double)a;
         }
         assert_int_equal(flow4d_surface_make(NULL, &volume, 1.5, &s, &surface), LAO_OK);
         measure m = check_closed(&surface);
@@ -252,7 +253,7 @@ static void smoothing_is_binomial(void **state) {
         double least = 9, expected = rows[k].passes < 2 ? rows[k].x : 1 + (0.625 - 0.3125) / 0.375;
         assert_int_equal(flow4d_surface_make(NULL, &volume, rows[k].iso, &s, &surface), LAO_OK);
         check_closed(&surface);
-        for (uint32_t i = 0; i < surface.vertex_count; i++)
+        for (size_t i = 0; i < surface.vertex_count; i++)
             least = fmin(least, (double)surface.vertices[3 * i]);
         assert_true(fabs(least - expected) < 1e-6);
         flow4d_surface_free(&surface);

@@ -73,7 +73,7 @@ static void images_do_not_depend_on_threads(void **state) {
         flow4d_volume volume;
         flow_host_make(&h, threads[i]);
         values[i] = malloc(voxels * sizeof(float));
-        images[i] = malloc(100 * 90 * sizeof(float));
+        images[i] = malloc(sizeof(float) * 100 * 90);
         assert_true(values[i] && images[i]);
         assert_int_equal(flow4d_temporal_maximum(&h.host, &grid, values[i]), LAO_OK);
         memset(&volume, 0, sizeof volume);
@@ -83,7 +83,7 @@ static void images_do_not_depend_on_threads(void **state) {
         assert_int_equal(flow4d_project_maximum(&h.host, &volume, &camera, 100, 90, images[i]),
                          LAO_OK);
         assert_memory_equal(values[0], values[i], voxels * sizeof(float));
-        assert_memory_equal(images[0], images[i], 100 * 90 * sizeof(float));
+        assert_memory_equal(images[0], images[i], sizeof(float) * 100 * 90);
     }
     float brightest = 0;
     for (int i = 0; i < 100 * 90; i++)
