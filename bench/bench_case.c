@@ -117,6 +117,7 @@ static bool settings_make(const bench_case *it, const char *preset, float width,
     memset(settings, 0, sizeof *settings);
     settings->width = width;
     settings->supersampling = (float)it->supersampling;
+    lao_setting_parse(module, lao_setting_find(module, "halo"), it->halo, settings);
     return lao_setting_parse(module, lao_setting_find(module, "preset"), preset, settings) == 0 ||
            bench_fail("--presets: there is no preset %s", preset);
 }
@@ -310,6 +311,15 @@ static bool covered_count(const work *w, side *s) {
 
 /* ---- telling ------------------------------------------------------------------------------ */
 
+/* The pass that drew the lines: of its rows the plan has one. */
+static const series *lines_find(const shot *it) {
+    for (uint32_t i = 0; i < it->pass_count; i++) {
+        if (strncmp(it->passes[i].name, "lines", 5) == 0)
+            return &it->passes[i].time;
+    }
+    return NULL;
+}
+
 static const series *pass_find(const shot *it, const char *name) {
     for (uint32_t i = 0; i < it->pass_count; i++) {
         if (strcmp(it->passes[i].name, name) == 0)
@@ -361,8 +371,7 @@ static void shot_tell(const side *s, uint32_t preset, uint32_t pixels, cJSON *ou
         cJSON_AddNumberToObject(row, "level", it->passes[i].level);
         add_series(row, NULL, &it->passes[i].time);
     }
-    add_number(out, "lines_over_floor",
-               quotient(pass_find(it, "lines"), pass_find(it, "floor_lines")));
+    add_number(out, "lines_over_floor", quotient(lines_find(it), pass_find(it, "floor_lines")));
     add_number(out, "occlusion_over_floor", over(cost.covered, taps));
     add_number(out, "occlusion_pass_over_floor_pass",
                quotient(pass_find(it, "occlusion"), pass_find(it, "floor_taps")));

@@ -26,8 +26,9 @@ void main() {
     }
     lao_v2 slope = lao_pixel_slope(lao_frame.ray, float(pixel.x) + 0.5, float(pixel.y) + 0.5);
     lao_v3 l = lao_towards_eye(slope, lao_frame.depth.w);
+    LAO_EXACT float specular = lao_setting_specular * lao_light_unpack(base.w);
     out_color = vec4(lao_shade(base.xyz, texelFetch(tangent, pixel, 0).xyz, l, lao_setting_ambient, lao_setting_diffuse,
-                               lao_setting_specular, lao_constant_shininess, lao_setting_strength * occlusion),
+                               specular, lao_constant_shininess, lao_setting_strength * occlusion),
                      1.0);
 }
 #endif

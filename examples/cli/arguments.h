@@ -9,7 +9,12 @@
 #include <stdint.h>
 
 /* Commands as bits, for the tables. */
-typedef enum cli_command_bit { CLI_INFO = 1, CLI_RENDER = 2, CLI_COMPARE = 4 } cli_command_bit;
+typedef enum cli_command_bit {
+    CLI_INFO = 1,
+    CLI_RENDER = 2,
+    CLI_COMPARE = 4,
+    CLI_FLOW = 8
+} cli_command_bit;
 
 /* One FILE and the flags that hold for it. */
 typedef struct cli_source {
@@ -19,19 +24,34 @@ typedef struct cli_source {
     const char *colormap;
     double range[2]; /* of the attribute; equal: from the data */
     uint32_t every;
-    double min_length;
+    double min_length; /* mm; negative: none is given */
     const char *bundle;
+    const char *unit; /* of trees and meshes; NULL: as the file tells, or guessed */
 } cli_source;
+
+/* How velocity volumes are read and traced. Numbers are 0, texts NULL where nothing is given. */
+typedef struct cli_flow_options {
+    const char *names, *mask, *unit, *axes; /* see io_volume_options */
+    double spacing[3], time_step, period;
+    uint32_t seeds, seed, max_points;
+    double at, step, tolerance; /* ms, ms, mm */
+    double threshold;           /* m/s; negative: none is given */
+    const char *method, *span, *attributes;
+    bool streamlines;
+} cli_flow_options;
 
 typedef struct cli_options {
     cli_source all;    /* flags before the first FILE */
     cli_source *files; /* owned */
     uint32_t file_count;
     const char *scene, *out, *dump, *timings, *backend, *camera, *save_camera, *view;
-    uint32_t lines, frames; /* 0: not given */
+    uint32_t lines, frames, fps; /* 0: not given */
     uint32_t size[2];
-    double time, background[4];
+    double time; /* ms; NaN: not given */
+    double background[4];
     bool ortho, json, help;
+    cli_flow_options flow;
+    const char *flow_flag; /* the last flag in `flow` that was given, or NULL */
 } cli_options;
 
 /* Parses what stands behind the command's name. False: wrong usage, reported. Free in any case. */

@@ -4,6 +4,7 @@
 #include "image.h"
 #include "report.h"
 #include "session.h"
+#include "video.h"
 
 #include <stdio.h>
 #include <stdlib.h>
@@ -47,7 +48,9 @@ static char *frame_path(const char *path, uint32_t frame) {
 
 /* ---- one frame -------------------------------------------------------------------------- */
 
-static bool write_picture(const char *path, cli_session *session, const cli_shot *shot) {
+/* Into a file of its own, or into `video` unless that is NULL. */
+static bool write_picture(const char *path, cli_video *video, cli_session *session,
+                          const cli_shot *shot) {
     char error[IMAGE_ERROR_SIZE];
     uint8_t *pixels = cli_session_picture(session);
     if (!pixels)
@@ -55,15 +58,16 @@ static bool write_picture(const char *path, cli_session *session, const cli_shot
     int channels = shot->background[3] < 1 ? 4 : 3;
     for (size_t i = 0; channels == 3 && i < (size_t)shot->width * shot->height; i++)
         memmove(pixels + 3 * i, pixels + 4 * i, 3);
-    bool ok = image_write_png(path, shot->width, shot->height, pixels, channels, error) ||
-              cli_fail("%s", error);
+    bool ok = video ? cli_video_add(video, pixels)
+                    : image_write_png(path, shot->width, shot->height, pixels, channels, error) ||
+                          cli_fail("%s", error);
     free(pixels);
     return ok;
 }
 
 /* Writes what one frame gave; frame -1: no sequence. */
 static bool write_frame(const cli_options *options, const cli_scene *scene, cli_session *session,
-                        const cli_shot *shot, int64_t frame) {
+                        const cli_shot *shot, cli_video *video, int64_t frame) {
     const char *paths[2] = {options->dump, options->out};
     bool ok = true;
     for (int i = 0; i < 2 && ok; i++) {
@@ -72,7 +76,8 @@ static bool write_frame(const cli_options *options, const cli_scene *scene, cli_
         char *numbered = frame < 0 ? NULL : frame_path(paths[i], (uint32_t)frame);
         const char *path = numbered ? numbered : paths[i];
         ok = (frame < 0 || numbered) && cli_go_on() &&
-             (i == 0 ? cli_dump(path, session, scene, shot) : write_picture(path, session, shot));
+             (i == 0 ? cli_dump(path, session, scene, shot)
+                     : write_picture(path, video, session, shot));
         free(numbered);
     }
     return ok;
@@ -80,23 +85,35 @@ static bool write_frame(const cli_options *options, const cli_scene *scene, cli_
 
 /* ---- all frames ------------------------------------------------------------------------- */
 
-/* With timings a first frame goes uncounted: it builds shaders and images. */
+/* Frame i of a sequence shows the first time plus i parts of the period. With timings a first frame
+ * goes uncounted: it builds shaders and images. */
 static bool render_frames(const cli_options *options, const cli_scene *scene, cli_session *session,
-                          cli_shot *shot) {
+                          cli_shot *shot, cli_video *video) {
     uint32_t count = options->frames ? options->frames : 1;
     uint32_t flags = options->timings ? LAO_FRAME_TIMINGS : 0;
-    float start = shot->time;
+    double start = (double)shot->time;
     cli_progress progress = {"rendering", options->out ? options->out : "", -1};
     bool ok = !flags || cli_session_render(session, shot, flags);
     for (uint32_t i = 0; ok && i < count; i++) {
-        shot->time = start + (float)((scene->beat[1] - scene->beat[0]) * i / count);
+        shot->time = (float)(start + scene->period * i / count);
         if (count > 1)
             cli_progress_show(&progress, i, count);
         ok = cli_session_render(session, shot, flags) &&
-             write_frame(options, scene, session, shot, options->frames ? (int64_t)i : -1);
+             write_frame(options, scene, session, shot, video, options->frames ? (int64_t)i : -1);
     }
     cli_progress_end(&progress);
     return ok;
+}
+
+/* A video appears when all of its frames are in it, else not at all. */
+static bool render_all(const cli_options *options, const cli_scene *scene, cli_session *session,
+                       cli_shot *shot) {
+    cli_video video;
+    if (!cli_is_video(options->out))
+        return render_frames(options, scene, session, shot, NULL);
+    return cli_video_open(&video, options->out, shot->width, shot->height,
+                          options->fps ? options->fps : 25) &&
+           cli_video_close(&video, render_frames(options, scene, session, shot, &video));
 }
 
 static bool write_json(const cli_options *options, cli_session *session, const cli_shot *shot) {
@@ -122,8 +139,7 @@ static bool render(const cli_options *options, const cli_scene *scene) {
         return write_json(options, NULL, &shot);
     bool ok = cli_session_open(&session, options->backend, scene, &shot,
                                options->dump ? LAO_VIEW_KEEP_IMAGES : 0) &&
-              render_frames(options, scene, &session, &shot) &&
-              write_json(options, &session, &shot);
+              render_all(options, scene, &session, &shot) && write_json(options, &session, &shot);
     cli_session_close(&session);
     return ok;
 }

@@ -31,6 +31,9 @@ bool io_warn(io_reader *reader, const char *format, ...) {
     va_start(arguments, format);
     vsnprintf(text, sizeof text, format, arguments);
     va_end(arguments);
+    for (size_t i = 0; i < reader->warning_count; i++) /* lines and mesh may say the same */
+        if (!strcmp(reader->warnings[i], text))
+            return true;
     const char *told = reader->warning_count == MOST ? "more warnings are left out" : text;
     char **warnings = io_grow(reader, reader->warnings, &reader->warning_capacity,
                               reader->warning_count + 1, sizeof *warnings);
@@ -164,6 +167,24 @@ char *io_copy_text(io_reader *reader, io_text text) {
             memcpy(copy + i, at, size);
     }
     return copy;
+}
+
+/* ---- Begin ----------------------------------------------------------------------------------- */
+
+/* Real files need at most a few times their size; compressed ones more. 32-bit systems have less to
+ * give. */
+void io_set_limit(io_reader *r, size_t size) {
+    const uint64_t most = sizeof(size_t) > 4 ? UINT64_C(32) << 30 : UINT64_C(1) << 30;
+    uint64_t limit = size > most / 4096 ? most : (UINT64_C(64) << 20) + (uint64_t)size * 4096;
+    r->limit = (size_t)(limit < most ? limit : most);
+}
+
+void io_begin(io_reader *r, const io_options *options, io_error *error) {
+    static const io_options none = {0, 0, NULL, false, NULL, NULL, NULL};
+    memset(r, 0, sizeof *r);
+    r->options = options ? options : &none;
+    r->error = error;
+    io_set_limit(r, SIZE_MAX);
 }
 
 /* ---- Files ----------------------------------------------------------------------------------- */

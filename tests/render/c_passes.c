@@ -282,7 +282,8 @@ static float occlusion_pixel(const c_inputs *in, int x, int y) {
     nl = lao_max(lao_v3_dot(c.n, c.l), 0);
     c.diffuse = s->light_intensity * s->light_diffuse * nl;
     c.r = lao_v3_along(lao_v3_scale(c.l, -1), c.n, 2 * nl);
-    c.noise = lao_pixel_noise((uint32_t)x, (uint32_t)y);
+    c.noise = in->noise ? in->noise(in->noise_frame, (uint32_t)x, (uint32_t)y)
+                        : lao_pixel_noise((uint32_t)x, (uint32_t)y);
     c.zoom = line.w > 0 ? line.w
                         : lao_pixel_zoom(in->frame.scale, in->frame.depth, lao_level_depth(own));
     for (uint32_t level = 0; level < (uint32_t)s->levels; level++) {
@@ -344,7 +345,8 @@ static lao_v4 shade_pixel(const c_inputs *in, int x, int y) {
     }
     l = lao_towards_eye(slope_of(in, x, y), in->frame.depth.w);
     c = lao_shade(lao_v3_make(base.x, base.y, base.z), lao_v3_make(t.x, t.y, t.z), l, s->ambient,
-                  s->diffuse, s->specular, (int)s->shininess, s->strength * occlusion);
+                  s->diffuse, s->specular * lao_light_unpack(base.w), (int)s->shininess,
+                  s->strength * occlusion);
     return lao_v4_make(c.x, c.y, c.z, 1);
 }
 

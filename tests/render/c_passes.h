@@ -14,6 +14,8 @@ typedef struct c_inputs {
     const render_image *color, *tangent, *depth, *zbuffer, *shaded, *out, *ao;
     const render_image *tensor[C_MOST_LEVELS]; /* from level 1 on */
     const render_image *level[C_MOST_LEVELS], *level_tangent[C_MOST_LEVELS];
+    lao_v3 (*noise)(uint32_t frame, uint32_t x, uint32_t y); /* NULL: lao_pixel_noise */
+    uint32_t noise_frame;
 } c_inputs;
 
 void c_inputs_find(c_inputs *in, const render_result *result, const lao_settings *settings);

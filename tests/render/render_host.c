@@ -22,6 +22,26 @@ static struct {
     uint32_t count;
 } spy;
 
+static struct {
+    const lao_module *const *list;
+    uint32_t count;
+} modules;
+
+void render_modules(const lao_module *const *list, uint32_t count) {
+    modules.list = list;
+    modules.count = count;
+}
+
+/* The row of an image by its number in the graph. */
+static const lao_image_row *image_row(uint32_t image) {
+    const lao_module *module = lao_lines_module();
+    for (uint32_t m = 0; image >= module->image_count; m++) {
+        image -= module->image_count;
+        module = modules.list[m];
+    }
+    return &module->images[image];
+}
+
 static void spy_on(const lao_execution *execution) {
     const lao_plan *plan = execution->plan;
     memcpy(&spy.frame, execution->frame_uniforms, sizeof spy.frame);
@@ -63,6 +83,8 @@ static int open_context(render_device *device, lao_backend *backend) {
     desc.backend = backend;
     desc.logger.log = on_log;
     desc.logger.user = device;
+    desc.modules = modules.list;
+    desc.module_count = modules.count;
     if (lao_create(&desc, &device->context) == LAO_OK)
         return 1;
     print_message("%s: %s\n", device->name, device->log);
@@ -160,12 +182,15 @@ void render_point(render_lines *lines, double x, double y, double z) {
     if (lines->point_count == lines->point_capacity) {
         lines->point_capacity = lines->point_capacity ? 2 * lines->point_capacity : 256;
         lines->points = grown(lines->points, lines->point_capacity, 3 * sizeof *lines->points);
+        lines->times = grown(lines->times, lines->point_capacity, sizeof *lines->times);
         lines->colors = grown(lines->colors, lines->point_capacity, 4);
     }
     p = lines->points + 3 * (size_t)lines->point_count;
     p[0] = (float)x;
     p[1] = (float)y;
     p[2] = (float)z;
+    lines->times[lines->point_count] =
+        4 * (float)(lines->point_count - (lines->offsets ? lines->offsets[lines->line_count] : 0));
     c = lines->colors + 4 * (size_t)lines->point_count;
     for (uint32_t k = 0; k < 3; k++)
         c[k] = (uint8_t)(lao_hash(4 * lines->point_count + k) >> 24);
@@ -218,6 +243,7 @@ void render_scatter(render_lines *lines, uint32_t count, uint32_t seed, double l
 void render_lines_free(render_lines *lines) {
     free(lines->offsets);
     free(lines->points);
+    free(lines->times);
     free(lines->colors);
     memset(lines, 0, sizeof *lines);
 }
@@ -477,15 +503,21 @@ static lao_lines upload(render_device *device, const render_lines *lines) {
     desc.point_count = lines->point_count;
     desc.offsets = lines->offsets;
     desc.points = lines->points;
+    desc.times = lines->times;
     desc.colors = lines->colors;
     succeeds(device, lao_lines_create(device->context, &desc, &handle));
     return handle;
 }
 
+static lao_object upload_object(render_device *device, const lao_object_desc *desc) {
+    lao_object handle = {0};
+    succeeds(device, lao_object_create(device->context, desc, &handle));
+    return handle;
+}
+
 static void read_all(render_device *device, lao_view view, render_result *result) {
-    const lao_module *module = lao_lines_module();
     for (uint32_t i = 0; i < spy.count; i++) {
-        const lao_image_row *row = &module->images[spy.instances[i].image];
+        const lao_image_row *row = image_row(spy.instances[i].image);
         render_image *image = &result->images[result->count++];
         lao_read_info info;
         size_t size;
@@ -542,6 +574,7 @@ void render_draw(render_device *device, const render_shot *shot, render_result *
     frame.camera = shot->camera;
     memcpy(frame.background, shot->background, sizeof frame.background);
     memcpy(frame.sphere, shot->sphere, sizeof frame.sphere);
+    frame.time = shot->time;
     if (shot->host_depth) {
         surface_make(device, &depth, LAO_FORMAT_D32F, shot->width, shot->height, shot->depth_value);
         import.image = "host_depth";
@@ -559,16 +592,25 @@ void render_draw(render_device *device, const render_shot *shot, render_result *
         frame.target = surface_image(&target, shot->target_flags);
     }
     for (uint32_t i = 0; i < shot->set_count; i++) {
-        sets[i].lines = upload(device, shot->lines[i]);
+        if (shot->lines[i])
+            sets[i].lines = upload(device, shot->lines[i]);
+        if (shot->objects[i])
+            sets[i].object = upload_object(device, shot->objects[i]);
         sets[i].settings = shot->settings[i];
+        sets[i].module_settings = shot->module_settings[i];
     }
+    frame.flags = shot->frame_flags;
     frame.sets = sets;
     frame.set_count = shot->set_count;
     draw(device, &frame);
     result->frame = spy.frame;
     read_all(device, frame.view, result);
-    for (uint32_t i = 0; i < shot->set_count; i++)
-        succeeds(device, lao_lines_destroy(device->context, sets[i].lines));
+    for (uint32_t i = 0; i < shot->set_count; i++) {
+        if (shot->lines[i])
+            succeeds(device, lao_lines_destroy(device->context, sets[i].lines));
+        if (shot->objects[i])
+            succeeds(device, lao_object_destroy(device->context, sets[i].object));
+    }
     if (shot->target != RENDER_NO_TARGET) {
         surface_read(device, &target, "target", &result->target);
         surface_free(device, &target);
