@@ -473,9 +473,6 @@ static void limits_of_the_device(void **state) {
         settings.levels = 2;
         f.sets[0].settings = &settings;
         assert_ok(lao_render(f.context, &f.frame));
-        settings.levels = 3;
-        settings.align = LAO_ALIGN_NONE;
-        assert_ok(lao_render(f.context, &f.frame));
         settings.supersampling = 3;
         assert_fails(&f, lao_render(f.context, &f.frame), VIEW_SIZE, "lines");
         settings.supersampling = 1;
