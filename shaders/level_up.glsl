@@ -13,6 +13,7 @@ LAO_OUT(2, vec4, out_tangent)
 void main() {
     ivec2 pixel = LAO_PIXEL;
     lao_level_sum sum = lao_level_sum_start(lao_v3_make(0.0, 0.0, 0.0));
+    vec2 inverse = 1.0 / lao_step.source.xy;
     int first = lao_constant_pyramid == LAO_PYRAMID_BOX ? 0 : -1;
     int last = lao_constant_pyramid == LAO_PYRAMID_BOX ? 1 : 2;
     for (int j = first; j <= last; j++) {
@@ -21,7 +22,7 @@ void main() {
             if (at.x < 0 || at.y < 0 || at.x >= int(lao_step.source.x) || at.y >= int(lao_step.source.y)) {
                 continue;
             }
-            lao_v4 child = texelFetch(tensor, at, 0);
+            lao_v4 child = LAO_TEXEL(tensor, float(at.x), float(at.y), inverse);
             lao_v3 t = lao_v3_make(0.0, 0.0, 0.0);
             if (lao_constant_light == LAO_LIGHT_AUTHOR) {
                 t = lao_signed_unpack(texelFetch(level_tangent, at, 0));

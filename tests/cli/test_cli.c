@@ -499,6 +499,46 @@ static void check_attribute(const image_exr *exr) {
     cJSON_Delete(json);
 }
 
+/* Each preset's numbers of a direction: cos 2a and sin 2a; alpha = |cos a| and its validity; none.
+ */
+static void test_dump_of_directions(void **state) {
+    static const char *const presets[] = {"default", "paper", "classic"};
+    enum { W = 192, H = 128 };
+    image_exr exr[3];
+    char error[IMAGE_ERROR_SIZE], command[256];
+    const float *c[3], *s[3], *d[3], *mask = NULL, *depth = NULL;
+    uint32_t covered = 0;
+    (void)state;
+    for (int i = 0; i < 3; i++) {
+        snprintf(command, sizeof command, "render %s--halo none --preset %s --dump directions.exr",
+                 SMALL, presets[i]);
+        expect_ok(RUN(command));
+        assert_true(image_read_exr("directions.exr", &exr[i], error));
+        c[i] = channel(&exr[i], "axial0.C", W, H);
+        s[i] = channel(&exr[i], "axial0.S", W, H);
+        d[i] = channel(&exr[i], "axial0.D", W, H);
+        mask = channel(&exr[i], "mask.V", W, H);
+        depth = channel(&exr[i], "depth.Z", W, H);
+    }
+    for (uint32_t i = 0; i < W * H; i++) {
+        assert_true(c[2][i] == 0 && s[2][i] == 0);
+        if (mask[i] == 0) {
+            assert_true(c[0][i] == 0 && s[0][i] == 0 && c[1][i] == 0 && s[1][i] == 0);
+            assert_true(d[0][i] == 1 && d[1][i] == 1 && d[2][i] == 1);
+            continue;
+        }
+        covered++;
+        assert_true(s[1][i] == 1);
+        assert_float_equal(c[0][i] * c[0][i] + s[0][i] * s[0][i], 1, 1e-6);
+        assert_float_equal(c[1][i] * c[1][i], 0.5f + 0.5f * c[0][i], 2e-3);
+        assert_float_equal(d[0][i], depth[i], 6e-7);
+        assert_true(d[0][i] == d[1][i] && d[0][i] == d[2][i]);
+    }
+    assert_true(covered > 100);
+    for (int i = 0; i < 3; i++)
+        image_exr_free(&exr[i]);
+}
+
 static void test_dump(void **state) {
     static const char *const names[] = {"color.R", "color.G",  "color.B",  "tangent.X",
                                         "zoom.V",  "axial0.C", "axial0.S", "axial0.D"};
@@ -607,16 +647,27 @@ static void test_nothing_left(void **state) {
 
 int main(int argc, char **argv) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_help),      cmocka_unit_test(test_wrong_usage),
-        cmocka_unit_test(test_failures),  cmocka_unit_test(test_no_folder),
-        cmocka_unit_test(test_interrupt), cmocka_unit_test(test_info),
-        cmocka_unit_test(test_info_tree), cmocka_unit_test(test_info_mesh),
-        cmocka_unit_test(test_flags),     cmocka_unit_test(test_flags_of_files),
-        cmocka_unit_test(test_camera),    cmocka_unit_test(test_sequence),
-        cmocka_unit_test(test_times),     cmocka_unit_test(test_videos),
-        cmocka_unit_test(test_timings),   cmocka_unit_test(test_dump),
-        cmocka_unit_test(test_compare),   cmocka_unit_test(test_both_backends),
-        cmocka_unit_test(test_real_file), cmocka_unit_test(test_nothing_left),
+        cmocka_unit_test(test_help),
+        cmocka_unit_test(test_wrong_usage),
+        cmocka_unit_test(test_failures),
+        cmocka_unit_test(test_no_folder),
+        cmocka_unit_test(test_interrupt),
+        cmocka_unit_test(test_info),
+        cmocka_unit_test(test_info_tree),
+        cmocka_unit_test(test_info_mesh),
+        cmocka_unit_test(test_flags),
+        cmocka_unit_test(test_flags_of_files),
+        cmocka_unit_test(test_camera),
+        cmocka_unit_test(test_sequence),
+        cmocka_unit_test(test_times),
+        cmocka_unit_test(test_videos),
+        cmocka_unit_test(test_timings),
+        cmocka_unit_test(test_dump),
+        cmocka_unit_test(test_dump_of_directions),
+        cmocka_unit_test(test_compare),
+        cmocka_unit_test(test_both_backends),
+        cmocka_unit_test(test_real_file),
+        cmocka_unit_test(test_nothing_left),
     };
     if (argc < 2)
         return 2;
