@@ -3847,8 +3847,13 @@ SDV_API float sdv_target_cone(const sdv_target *target, lao_v4 a, lao_v4 b) {
         }
         i = (node - target->leaf_count) * SDV__PIECES;
         for (node = i; node < i + SDV__PIECES && node < target->piece_count; node++) {
-            float d = sdv__piece_cone(target->pieces + node, a, b);
-            least = d < least ? d : least;
+            const sdv__piece *s = target->pieces + node;
+            lao_v3 low = s->u, high = s->u;
+            sdv__box_grow(&low, &high, s->v);
+            sdv__box_grow(&low, &high, s->w);
+            if (sdv__ball_cone(sdv__box_ball(&low, &high), a, b) < least) {
+                least = lao_min(least, sdv__piece_cone(s, a, b));
+            }
         }
     }
     return least - target->radius;
