@@ -344,6 +344,8 @@ enum { SDV_TRACE_NEAREST = 1 /* also d_min and t_min */ };
 typedef struct sdv_ray {
     lao_v3 origin, direction; /* mm; unit */
     uint32_t flags;           /* SDV_TRACE_... */
+    float reach; /* mm: d_min does not matter beyond this, and may then be too great; 0: it does,
+                    at several times the cost of a ray */
 } sdv_ray;
 
 typedef struct sdv_hit {
@@ -788,6 +790,10 @@ LAO_FN sdv_march sdv_march_note(sdv_march m, sdv_minimum found) {
         r.low_cone = found.last;
     }
     return r;
+}
+/* May something as near as `reach` be seen from an empty cell? 0: everything matters. */
+LAO_FN bool sdv_is_within(float far_step, float reach) {
+    return !(reach > 0.0f) || far_step < reach;
 }
 /* The least distance of a ray that hits nothing is looked for between x and y: elsewhere it is more
    than `low` away from the ball around the box. Where it is nearest to the ball's middle: z. */
@@ -3342,8 +3348,7 @@ static sdv_march sdv__least(const sdv_grid *g, const sdv_ray *ray, sdv_march m) 
         span = sdv_least_span(ray->origin, ray->direction, box, m.low);
         t = i == 0 ? span.x : t + sdv_least_step(n, cell->w > 0.0f, cell->z, m.low, g->cell);
     }
-    m.d_min = SDV_FAR;
-    return sdv__minimum(g, ray, m, m.low_cone, 0.0f, SDV_FAR);
+    return m;
 }
 
 /* On to the surface from a point close to it. */
@@ -3376,7 +3381,7 @@ SDV_API void sdv_trace(const sdv_grid *grid, const sdv_ray *ray, sdv_hit *hit) {
         const lao_v4 *cell = sdv__cell_at(grid, p);
         bool occupied = cell->w > 0.0f;
         sdv_near n = sdv_near_start(0.0f);
-        if (occupied || nearest) {
+        if (occupied || (nearest && sdv_is_within(cell->z, ray->reach))) {
             n = sdv__near_at(grid, cell, p, ray->direction);
         }
         if (nearest) {
@@ -3386,7 +3391,9 @@ SDV_API void sdv_trace(const sdv_grid *grid, const sdv_ray *ray, sdv_hit *hit) {
         m = sdv_march_step(m, n, occupied, cell->z, grid->cell);
     }
     if (nearest && m.state != SDV_MARCH_HITS) {
-        m = sdv__least(grid, ray, m);
+        m = ray->reach > 0.0f ? m : sdv__least(grid, ray, m);
+        m.d_min = SDV_FAR;
+        m = sdv__minimum(grid, ray, m, m.low_cone, 0.0f, SDV_FAR);
     }
     memset(hit, 0, sizeof *hit);
     hit->cone = SDV_NONE;

@@ -137,7 +137,7 @@ static void boolean_operations(void **state) {
                                    120);
         lao_v3 to = v3(vessel_between(&seed, -25, 25), vessel_between(&seed, -25, 25),
                        vessel_between(&seed, -25, 25));
-        sdv_ray ray = {from, lao_v3_unit(lao_v3_sub(to, from), to), 0};
+        sdv_ray ray = {from, lao_v3_unit(lao_v3_sub(to, from), to), 0, 0};
         sdv_hit hit;
         if (sdv_shape_distance(from, s[0]) < 0 || (n > 1 && sdv_shape_distance(from, s[1]) < 0))
             continue; /* starts inside: see below */
@@ -176,7 +176,7 @@ static void carving_opens_vessels(void **state) {
     sdv_tree t = tree_of(2, p, r, 1, s);
     sdv_grid g = grid_of(&t, 64);
     sdv_shape cut = shape(SDV_SHAPE_PLANE, SDV_SUBTRACTION, v4(0, 0, -1, -1), v4(0, 0, 0, 0));
-    sdv_ray ray = {v3(0, 1, 30), v3(0, 0, -1), 0}; /* the half z > 1 goes */
+    sdv_ray ray = {v3(0, 1, 30), v3(0, 0, -1), 0, 0}; /* the half z > 1 goes */
     sdv_hit hit;
     uint32_t which;
     sdv_trace_shapes(&g, &cut, 1, &ray, &hit, &which);

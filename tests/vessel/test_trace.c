@@ -47,7 +47,7 @@ static lao_v3 v3(double x, double y, double z) {
     return lao_v3_make((float)x, (float)y, (float)z);
 }
 static sdv_hit shoot(const scene *c, lao_v3 origin, lao_v3 direction) {
-    sdv_ray ray = {origin, lao_v3_unit(direction, direction), SDV_TRACE_NEAREST};
+    sdv_ray ray = {origin, lao_v3_unit(direction, direction), SDV_TRACE_NEAREST, 0};
     sdv_hit hit, plain;
     sdv_trace(&c->grid, &ray, &hit);
     ray.flags = 0; /* what is seen does not depend on d_min being asked for */
@@ -202,14 +202,15 @@ static void random_rays(void **state) {
         double radius;
     } cases[] = {{60, 64, 4}, {120, 128, 1}, {120, 32, 0.2}, {30, 64, 15}};
     for (int i = 0; i < 4; i++) {
-        uint32_t seed = (uint32_t)i, wrong = 0, hits = 0, other = 0, steps = 0, loose = 0, far = 0;
+        uint32_t seed = (uint32_t)i, wrong = 0, hits = 0, other = 0, steps = 0, loose = 0, far = 0,
+                 near_rays = 0, coarse = 0;
         scene c =
             make_random((uint32_t)i + 1, cases[i].nodes, 100, cases[i].radius, cases[i].resolution);
         double cell = (double)c.grid.cell, worst = 0, miss = 0, most = 0, most_near = 0;
         for (int k = 0; k < RAYS; k++) {
             lao_v3 o, v = v3(0, 0, 1);
             aim(&seed, 100, &o, &v);
-            sdv_ray ray = {o, v, SDV_TRACE_NEAREST};
+            sdv_ray ray = {o, v, SDV_TRACE_NEAREST, 0};
             sdv_hit hit;
             sdv_trace(&c.grid, &ray, &hit);
             truth t = brute(&c.grid, o, v, 400);
@@ -218,6 +219,15 @@ static void random_rays(void **state) {
                 wrong +=
                     t.least > 1e-3 * cell || t.t >= 0; /* closer than that counts as touching */
                 continue;
+            }
+            ray.reach = c.grid.cell; /* within reach, d_min is the same without the rest */
+            sdv_hit close;
+            sdv_trace(&c.grid, &ray, &close);
+            assert_true(close.cone == hit.cone && close.t == hit.t && close.d_min >= 0);
+            if (hit.d_min < ray.reach) {
+                near_rays++;
+                coarse += close.d_min > 1.002f * hit.d_min + 1e-4f;
+                assert_true(close.d_min < 1.2f * hit.d_min + 1e-3f);
             }
             if (t.t < 0) { /* the least of the samples is at most their spacing off */
                 double over = (double)hit.d_min / t.least - 1;
@@ -251,14 +261,15 @@ static void random_rays(void **state) {
         printf("%u segments, %u^3: %u of %d hit, %u disagree, |distance| < %.1e cells, %u ties, %u "
                "land "
                "elsewhere, d_min within %.1e mm, %.1f steps; %u d_min too great, at most %.2g, "
-               "near %.2g\n",
+               "near %.2g; with a reach %u of %u\n",
                cases[i].nodes - 1, cases[i].resolution, hits, RAYS, wrong, worst / cell, other,
-               loose, miss, (double)steps / RAYS, far, most, most_near);
+               loose, miss, (double)steps / RAYS, far, most, most_near, coarse, near_rays);
         assert_true(hits > 200);
         assert_true(wrong == 0);
         assert_true(loose <= RAYS / 10000);
         assert_true(worst < 1e-3 * cell);
         assert_true(miss < 1e-3);
+        assert_true(coarse <= near_rays / 50);
         assert_true(most_near < 2e-3 && most < 0.35 && far < RAYS / 50);
         done(&c);
     }
@@ -277,7 +288,7 @@ static void no_vessel_is_too_thin(void **state) {
                       (double)(a->z + t * (b->z - a->z)));
         aim(&seed, 30, &o,
             &v); /* from nearer by, so that float rays do not miss it by themselves */
-        sdv_ray ray = {o, lao_v3_unit(lao_v3_sub(p, o), v), 0};
+        sdv_ray ray = {o, lao_v3_unit(lao_v3_sub(p, o), v), 0, 0};
         sdv_hit hit;
         sdv_trace(&c.grid, &ray, &hit);
         assert_true(hit.cone != SDV_NONE);
@@ -339,7 +350,8 @@ static void odd_rays_end(void **state) {
     for (int i = 0; i < 7 * 7 * 7; i++) {
         for (int k = 0; k < 7; k++) {
             sdv_ray ray = {v3(values[k], 3, -60),
-                           v3(values[i % 7], values[i / 7 % 7], values[i / 49]), SDV_TRACE_NEAREST};
+                           v3(values[i % 7], values[i / 7 % 7], values[i / 49]), SDV_TRACE_NEAREST,
+                           0};
             sdv_hit hit;
             sdv_trace(&c.grid, &ray, &hit);
             assert_true(hit.cone == SDV_NONE || hit.cone < c.grid.cone_count);
