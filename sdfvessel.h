@@ -451,7 +451,7 @@ struct sdv_cone_point {
     float s, l, d;  /* between: length of the axis, of the tangent; radius of a less that of b */
     lao_v3 axis;    /* between: unit, from a to b */
     lao_v3 away;    /* from the axis or the ball's centre to the point, not unit */
-    float length;   /* of away */
+    float apart;    /* length of away */
 };
 #ifndef LAO_GLSL
 typedef struct sdv_cone_point sdv_cone_point;
@@ -460,7 +460,7 @@ LAO_FN sdv_cone_point sdv_cone_point_ball(sdv_cone_point c, lao_v3 p, lao_v4 bal
     sdv_cone_point r = c;
     r.away = lao_v3_sub(p, lao_v3_make(ball.x, ball.y, ball.z));
     LAO_EXACT float length = lao_sqrt(lao_v3_dot(r.away, r.away));
-    r.length = length;
+    r.apart = length;
     r.distance = length - ball.w;
     r.part = part;
     return r;
@@ -503,7 +503,7 @@ LAO_FN sdv_cone_point sdv_cone_point_make(lao_v3 p, lao_v4 a, lao_v4 b) {
     c.x = x;
     c.y = y;
     c.l = l;
-    c.length = y;
+    c.apart = y;
     return c;
 }
 /* Signed distance in mm, exact outside and inside; one ball when it holds the other (Eqs. 1-3,
@@ -539,7 +539,7 @@ LAO_FN lao_v3 sdv_round_cone_gradient(lao_v3 p, lao_v4 a, lao_v4 b) {
 }
 /* Slope of the distance along a unit direction: gradient times direction. */
 LAO_FN float sdv_cone_slope(sdv_cone_point c, lao_v3 direction) {
-    LAO_EXACT float away = lao_v3_dot(c.away, direction) / lao_max(c.length, 1.0e-30f);
+    LAO_EXACT float away = lao_v3_dot(c.away, direction) / lao_max(c.apart, 1.0e-30f);
     if (c.part != 0.0f) {
         return away;
     }
@@ -744,7 +744,7 @@ struct sdv_minimum {
 #ifndef LAO_GLSL
 typedef struct sdv_minimum sdv_minimum;
 #endif
-#define SDV_MINIMUM_ROUNDS 3
+#define SDV_MINIMUM_ROUNDS 6
 LAO_FN sdv_minimum sdv_minimum_start(float cone) {
     sdv_minimum r;
     r.d = SDV_FAR;

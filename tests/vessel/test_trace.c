@@ -186,10 +186,8 @@ static truth brute(const sdv_grid *g, lao_v3 o, lao_v3 v, double end) {
 
 /* A ray from a sphere around the tree to a point near it. */
 static void aim(uint32_t *seed, double size, lao_v3 *o, lao_v3 *v) {
-    lao_v3 from =
-        lao_sphere_point((float)vessel_between(seed, 0, 1), (float)vessel_between(seed, 0, 1));
-    lao_v3 to = v3(vessel_between(seed, -size, size) / 2, vessel_between(seed, -size, size) / 2,
-                   vessel_between(seed, -size, size) / 2);
+    lao_v3 from = vessel_direction(seed);
+    lao_v3 to = vessel_point(seed, size / 2);
     *o = lao_v3_scale(from, (float)(2 * size));
     *v = lao_v3_unit(lao_v3_sub(to, *o), *v);
 }
@@ -322,14 +320,11 @@ static void starts_inside(void **state) {
     uint32_t seed = 1, inside = 0;
     for (int i = 0; i < 3000; i++) {
         const lao_v4 *a = c.grid.cones + 2 * (i % (int)c.grid.cone_count);
-        lao_v3 o = v3((double)a->x + vessel_between(&seed, -3, 3),
-                      (double)a->y + vessel_between(&seed, -3, 3),
-                      (double)a->z + vessel_between(&seed, -3, 3));
+        lao_v3 o = lao_v3_add(lao_v3_make(a->x, a->y, a->z), vessel_point(&seed, 3));
         if (sdv_grid_distance(&c.grid, o, NULL) > -0.01f)
             continue;
         inside++;
-        lao_v3 v = lao_sphere_point((float)vessel_between(&seed, 0, 1),
-                                    (float)vessel_between(&seed, 0, 1));
+        lao_v3 v = vessel_direction(&seed);
         hit = shoot(&c, o, v);
         assert_int_equal(hit.inside, 1);
         assert_near(sdv_cones_distance(c.grid.cones, c.grid.cone_count, hit.position, NULL), 0,
