@@ -339,15 +339,13 @@ SDV_API float sdv_grid_distance(const sdv_grid *grid, lao_v3 p, uint32_t *cone);
 /* The same by going through all cones: the oracle. */
 SDV_API float sdv_cones_distance(const lao_v4 *cones, uint32_t count, lao_v3 p, uint32_t *cone);
 
-enum {
-    SDV_TRACE_NEAREST = 1, /* also d_min and t_min */
-    SDV_TRACE_CLOSE = 2    /* the same where d_min is below `reach`, in a fraction of the time */
-};
+enum { SDV_TRACE_NEAREST = 1 /* also d_min and t_min */ };
 
 typedef struct sdv_ray {
     lao_v3 origin, direction; /* mm; unit */
     uint32_t flags;           /* SDV_TRACE_... */
-    float reach;              /* mm, of SDV_TRACE_CLOSE */
+    float reach; /* mm: d_min does not matter beyond this, and may then be too great; 0: it
+                    does, at several times the cost of a ray */
 } sdv_ray;
 
 typedef struct sdv_hit {
@@ -514,7 +512,7 @@ struct sdv_cone_point {
     float s, l, d;  /* between: length of the axis, of the tangent; radius of a less that of b */
     lao_v3 axis;    /* between: unit, from a to b */
     lao_v3 away;    /* from the axis or the ball's centre to the point, not unit */
-    float radial;   /* length of away */
+    float apart;    /* length of away */
 };
 #ifndef LAO_GLSL
 typedef struct sdv_cone_point sdv_cone_point;
@@ -523,7 +521,7 @@ LAO_FN sdv_cone_point sdv_cone_point_ball(sdv_cone_point c, lao_v3 p, lao_v4 bal
     sdv_cone_point r = c;
     r.away = lao_v3_sub(p, lao_v3_make(ball.x, ball.y, ball.z));
     LAO_EXACT float length = lao_sqrt(lao_v3_dot(r.away, r.away));
-    r.radial = length;
+    r.apart = length;
     r.distance = length - ball.w;
     r.part = part;
     return r;
@@ -566,7 +564,7 @@ LAO_FN sdv_cone_point sdv_cone_point_make(lao_v3 p, lao_v4 a, lao_v4 b) {
     c.x = x;
     c.y = y;
     c.l = l;
-    c.radial = y;
+    c.apart = y;
     return c;
 }
 /* Signed distance in mm, exact outside and inside; one ball when it holds the other (Eqs. 1-3,
@@ -602,7 +600,7 @@ LAO_FN lao_v3 sdv_round_cone_gradient(lao_v3 p, lao_v4 a, lao_v4 b) {
 }
 /* Slope of the distance along a unit direction: gradient times direction. */
 LAO_FN float sdv_cone_slope(sdv_cone_point c, lao_v3 direction) {
-    LAO_EXACT float away = lao_v3_dot(c.away, direction) / lao_max(c.radial, 1.0e-30f);
+    LAO_EXACT float away = lao_v3_dot(c.away, direction) / lao_max(c.apart, 1.0e-30f);
     if (c.part != 0.0f) {
         return away;
     }
@@ -807,7 +805,7 @@ struct sdv_minimum {
 #ifndef LAO_GLSL
 typedef struct sdv_minimum sdv_minimum;
 #endif
-#define SDV_MINIMUM_ROUNDS 3
+#define SDV_MINIMUM_ROUNDS 6
 LAO_FN sdv_minimum sdv_minimum_start(float cone) {
     sdv_minimum r;
     r.d = SDV_FAR;
@@ -903,16 +901,16 @@ LAO_FN sdv_march sdv_march_step(sdv_march m, sdv_near n, bool occupied, float fa
     }
     return r;
 }
-/* Whether a place in a cell may be nearer to the tree than `reach`, by the cell's distance: that is
-   up to 1.74 cells too great, and the place up to 0.87 cells from the centre. */
-LAO_FN bool sdv_is_close(float distance, float cell, float reach) {
-    LAO_EXACT float least = distance - 2.625f * cell;
-    return least < reach;
+/* May something as near as `reach` be seen from an empty cell? 0: everything matters. */
+LAO_FN bool sdv_is_within(float far_step, float reach) {
+    return !(reach > 0.0f) || far_step < reach;
 }
-/* The box with a rim of `by` mm. What lies in it is no farther from any place outside than from
-   that place's nearest one inside, so cells serve out there as well. */
-LAO_FN sdv_box sdv_box_grown(sdv_box box, float by) {
+/* Where rays look for near misses: the box, which has 2 cells around the tree, with a rim where
+   that is less than `reach`. What lies in the box is no farther from a place outside than from that
+   place's nearest one inside, so cells serve out there as well. */
+LAO_FN sdv_box sdv_box_grown(sdv_box box, float reach) {
     sdv_box r = box;
+    LAO_EXACT float by = lao_max(reach - 2.0f * box.cell, 0.0f);
     LAO_EXACT float cells = 2.0f * by / box.cell;
     r.origin = lao_v3_make(box.origin.x - by, box.origin.y - by, box.origin.z - by);
     r.size = lao_v3_make(box.size.x + cells, box.size.y + cells, box.size.z + cells);
@@ -3462,8 +3460,7 @@ static sdv_march sdv__least(const sdv_grid *g, const sdv_ray *ray, sdv_march m) 
         span = sdv_least_span(ray->origin, ray->direction, box, m.low);
         t = i == 0 ? span.x : t + sdv_least_step(n, cell->w > 0.0f, cell->z, m.low, g->cell);
     }
-    m.d_min = SDV_FAR;
-    return sdv__minimum(g, ray, m, m.low_cone, 0.0f, SDV_FAR);
+    return m;
 }
 
 /* On to the surface from a point close to it. */
@@ -3488,32 +3485,28 @@ static void sdv__land(const sdv_grid *g, const sdv_ray *ray, const sdv_march *m,
 
 SDV_API void sdv_trace(const sdv_grid *grid, const sdv_ray *ray, sdv_hit *hit) {
     sdv_box box = sdv__grid_box(grid);
-    int exact = (ray->flags & SDV_TRACE_NEAREST) != 0, i;
-    int close = !exact && (ray->flags & SDV_TRACE_CLOSE);
+    int nearest = (ray->flags & SDV_TRACE_NEAREST) != 0, i;
     lao_v2 span =
-        sdv_ray_box(ray->origin, ray->direction, close ? sdv_box_grown(box, ray->reach) : box);
+        sdv_ray_box(ray->origin, ray->direction, nearest ? sdv_box_grown(box, ray->reach) : box);
     sdv_march m = sdv_march_start(span);
     for (i = 0; i < SDV_MAX_STEPS && m.state == SDV_MARCH_GOES; i++) {
         lao_v3 p = lao_v3_along(ray->origin, ray->direction, m.t);
         const lao_v4 *cell = sdv__cell_at(grid, p);
         bool occupied = cell->w > 0.0f;
         sdv_near n = sdv_near_start(0.0f);
-        if (occupied || exact || (close && sdv_is_close(cell->x, grid->cell, ray->reach))) {
+        if (occupied || (nearest && sdv_is_within(cell->z, ray->reach))) {
             n = sdv__near_at(grid, cell, p, ray->direction);
         }
-        if (exact) {
+        if (nearest) {
             m = sdv__note(grid, ray, m, n);
-        }
-        if ((exact || close) && sdv_march_passed(m, n)) {
-            m = sdv__minimum(grid, ray, m, m.cone, m.older, m.t);
+            m = sdv_march_passed(m, n) ? sdv__minimum(grid, ray, m, m.cone, m.older, m.t) : m;
         }
         m = sdv_march_step(m, n, occupied, cell->z, grid->cell);
     }
-    if (exact && m.state != SDV_MARCH_HITS) {
-        m = sdv__least(grid, ray, m);
-    }
-    if (close && m.state != SDV_MARCH_HITS && m.falling > 0.5f && m.inside < 0.5f) {
-        m = sdv__minimum(grid, ray, m, m.cone, m.older, SDV_FAR);
+    if (nearest && m.state != SDV_MARCH_HITS) {
+        m = ray->reach > 0.0f ? m : sdv__least(grid, ray, m);
+        m.d_min = SDV_FAR;
+        m = sdv__minimum(grid, ray, m, m.low_cone, 0.0f, SDV_FAR);
     }
     memset(hit, 0, sizeof *hit);
     hit->cone = SDV_NONE;

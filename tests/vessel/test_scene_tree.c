@@ -91,8 +91,7 @@ static void trees_fill_the_organ(void **state) {
     assert_int_equal(sdv_grid_build(NULL, &t, &desc, &g), LAO_OK);
     uint32_t seed = 1, far = 0;
     for (int i = 0; i < 2000; i++) {
-        lao_v3 u = lao_sphere_point((float)vessel_between(&seed, 0, 1),
-                                    (float)vessel_between(&seed, 0, 1));
+        lao_v3 u = vessel_direction(&seed);
         float r = 0.9f * (float)cbrt(vessel_between(&seed, 0, 1));
         lao_v3 p = lao_v3_make(r * u.x * s.liver[0], r * u.y * s.liver[1], r * u.z * s.liver[2]);
         lao_v3 d = lao_v3_make(p.x - s.tumour[0], p.y - s.tumour[1], p.z - s.tumour[2]);

@@ -133,10 +133,10 @@ static uint32_t check_trace(const scene *s, const subject *tree, const render_re
             sdv_ray ray;
             sdv_hit hit;
             ray_of(&result->frame, x, y, &ray);
-            ray.flags = s->vessel.near_miss == SDV_NEAR_MISS_CLOSE   ? SDV_TRACE_CLOSE
-                        : s->vessel.near_miss == SDV_NEAR_MISS_EXACT ? SDV_TRACE_NEAREST
-                                                                     : 0;
-            ray.reach = sdv_near_miss_reach(0.5f, 0.25f, 2, result->frame.depth.z);
+            ray.flags = s->vessel.near_miss == SDV_NEAR_MISS_NONE ? 0 : SDV_TRACE_NEAREST;
+            if (s->vessel.near_miss == SDV_NEAR_MISS_CLOSE) {
+                ray.reach = sdv_near_miss_reach(0.5f, 0.25f, 2, result->frame.depth.z);
+            }
             sdv_trace(&tree->grid, &ray, &hit);
             q = lao_v4_make(hit.position.x, hit.position.y, hit.position.z,
                             hit.cone == SDV_NONE ? -1.0f : (float)hit.cone);
