@@ -606,7 +606,7 @@ LAO_FN float vsf_gauss(float distance2, float sigma) {
     if (!(sigma > 0.0f)) {
         return distance2 > 0.0f ? 0.0f : 1.0f;
     }
-    LAO_EXACT float x = -0.72134752f * (distance2 / (sigma * sigma));
+    LAO_EXACT float x = -0.72134752f * (distance2 / sigma / sigma);
     return x < -125.0f ? 0.0f : lao_exp2(x);
 }
 #define VSF_BLUR_REACH 3.0f /* samples farther than this many sigmas do not count */
