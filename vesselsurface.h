@@ -582,8 +582,11 @@ LAO_FN lao_v4 vsf_over(lao_v4 front, lao_v4 behind) {
 }
 /* The alternative: light is added, at most 1. */
 LAO_FN lao_v4 vsf_add(lao_v4 front, lao_v4 behind) {
-    return lao_v4_make(lao_min(front.x + behind.x, 1.0f), lao_min(front.y + behind.y, 1.0f),
-                       lao_min(front.z + behind.z, 1.0f), lao_min(front.w + behind.w, 1.0f));
+    LAO_EXACT float x = front.x + behind.x; /* exact: no sum may join a caller's product */
+    LAO_EXACT float y = front.y + behind.y;
+    LAO_EXACT float z = front.z + behind.z;
+    LAO_EXACT float w = front.w + behind.w;
+    return lao_v4_make(lao_min(x, 1.0f), lao_min(y, 1.0f), lao_min(z, 1.0f), lao_min(w, 1.0f));
 }
 /* A ghosted surface (METHODS 9.3): front faces over the flow over opaque back faces over what is
    behind all. Each premultiplied. */
@@ -594,7 +597,9 @@ LAO_FN lao_v4 vsf_ghost(lao_v4 front, lao_v4 flow, lao_v4 back, lao_v4 behind) {
 /* ---- focus (METHODS 10.5) */
 /* How far a depth is outside the focus region, mm */
 LAO_FN float vsf_outside(float z, float focus_near, float focus_far) {
-    return lao_max(lao_max(focus_near - z, z - focus_far), 0.0f);
+    LAO_EXACT float before = focus_near - z;
+    LAO_EXACT float behind = z - focus_far;
+    return lao_max(lao_max(before, behind), 0.0f);
 }
 /* Width of the blur in pixels */
 LAO_FN float vsf_blur_sigma(float outside, float growth, float sigma_max) {
@@ -628,9 +633,12 @@ LAO_FN float vsf_blur_weight(float distance2, float sigma, float z, float sample
 /* ---- shadow from the depth buffer (METHODS 10.6) */
 /* The colour, darker where the blurred depth (0..1, larger is farther) is less than the depth. */
 LAO_FN lao_v3 vsf_unsharp(lao_v3 color, float depth, float blurred, float strength) {
-    LAO_EXACT float shade = strength * lao_min(blurred - depth, 0.0f);
-    return lao_v3_make(lao_max(color.x + shade, 0.0f), lao_max(color.y + shade, 0.0f),
-                       lao_max(color.z + shade, 0.0f));
+    LAO_EXACT float rise = blurred - depth;
+    LAO_EXACT float shade = strength * lao_min(rise, 0.0f);
+    LAO_EXACT float x = color.x + shade;
+    LAO_EXACT float y = color.y + shade;
+    LAO_EXACT float z = color.z + shade;
+    return lao_v3_make(lao_max(x, 0.0f), lao_max(y, 0.0f), lao_max(z, 0.0f));
 }
 /* VSF_SHARED_END */
 
