@@ -2,6 +2,7 @@
 #include "bench.h"
 
 #include "bench_case.h"
+#include "bench_flow.h"
 #include "bench_modules.h"
 #include "bench_report.h"
 #include "bench_scene.h"
@@ -25,7 +26,7 @@ typedef struct bench_options {
     uint32_t lines[MOST], line_count;
     bench_size sizes[MOST];
     uint32_t size_count;
-    bool json, data, quick, help;
+    bool json, data, quick, flow, help;
     const char *export_lines;
 } bench_options;
 
@@ -40,6 +41,7 @@ static const char usage[] =
     "  --frames N              measured frames, after 2 to warm up (7)\n"
     "  --data                  also the real line sets in $LINEAO_DATA\n"
     "  --quick                 1000 lines at 214x230, 3 frames, unless told otherwise\n"
+    "  --flow                  instead: pathlines of flow4d.h, 30000 (--quick: 1000; --lines N)\n"
     "  --export-lines FILE     only write lines and camera for bench/vtk_peer.py\n"
     "\n"
     "Passes are timed with a finish (OpenGL) or timestamps (Vulkan), in the same frames as their\n"
@@ -150,6 +152,7 @@ static bool parse_flag(int argc, char **argv, int *i, bench_options *options) {
     } switches[] = {{"--json", &options->json},
                     {"--data", &options->data},
                     {"--quick", &options->quick},
+                    {"--flow", &options->flow},
                     {"--help", &options->help}};
     for (size_t k = 0; k < sizeof switches / sizeof *switches; k++) {
         if (strcmp(argv[*i], switches[k].name) == 0)
@@ -356,6 +359,15 @@ static bool export_run(const bench_options *options) {
     return ok;
 }
 
+/* The JSON or the table of `--flow`, which needs no backend. */
+static bool flow_run(const bench_options *options, cJSON *document) {
+    uint32_t lines = options->quick ? 1000 : 30000;
+    cJSON_AddStringToObject(document, "program", "lineao bench --flow");
+    cJSON_AddNumberToObject(document, "version", LAO_VERSION);
+    cJSON_AddNumberToObject(document, "processors", (double)sysconf(_SC_NPROCESSORS_ONLN));
+    return bench_flow_run(document, options->line_count ? options->lines[0] : lines);
+}
+
 static bool print_json(const cJSON *document) {
     char *words = cJSON_Print(document);
     if (words)
@@ -373,18 +385,20 @@ int bench_command(int argc, char **argv) {
     }
     if (options.help)
         return fputs(usage, stdout) < 0;
-    fill_in(&options);
-    if (options.export_lines)
+    if (!options.flow)
+        fill_in(&options);
+    if (!options.flow && options.export_lines)
         return export_run(&options) ? 0 : 1;
     cJSON *document = cJSON_CreateObject();
-    bool ok = run(&options, document);
-    if (ok) {
+    bool ok = options.flow ? flow_run(&options, document) : run(&options, document);
+    if (ok && !options.flow)
         bench_report_judge(document);
-        if (options.json)
-            ok = print_json(document);
-        else
-            bench_report_print(document);
-    }
+    if (ok && options.json)
+        ok = print_json(document);
+    else if (ok && options.flow)
+        bench_flow_print(document);
+    else if (ok)
+        bench_report_print(document);
     cJSON_Delete(document);
     return ok && fflush(stdout) == 0 ? 0 : 1;
 }

@@ -158,6 +158,30 @@ static void test_export(void **state) {
     remove("bench_lines.raw");
 }
 
+/* Pathlines: every row has its numbers, and memory keeps its promise. */
+static void test_flow(void **state) {
+    (void)state;
+    program_run run = program_start(program, false, "--flow --lines 300 --json");
+    assert_int_equal(run.code, 0);
+    assert_string_equal(run.err, "");
+    cJSON *document = cJSON_Parse(run.out);
+    const cJSON *rows = field(document, "flow"), *row;
+    assert_int_equal(cJSON_GetArraySize(rows), 6);
+    cJSON_ArrayForEach(row, rows) {
+        assert_true(number(row, "lines") == 300);
+        assert_true(number(row, "points") > 10000 && number(row, "seconds") > 0);
+        assert_true(number(row, "points_per_second") > 1000);
+        assert_true(number(row, "result_mb") > 20e-6 * number(row, "points"));
+        assert_true(number(row, "peak_mb") <= 3 * number(row, "result_mb"));
+    }
+    cJSON_Delete(document);
+    program_free(&run);
+    run = program_start(program, false, "--flow --lines 10");
+    assert_int_equal(run.code, 0);
+    assert_non_null(strstr(run.out, "function  rk4"));
+    program_free(&run);
+}
+
 static void test_usage(void **state) {
     (void)state;
     static const char *const wrong[] = {
@@ -183,7 +207,8 @@ static void test_usage(void **state) {
 
 int main(int argc, char **argv) {
     const struct CMUnitTest tests[] = {cmocka_unit_test(test_json), cmocka_unit_test(test_table),
-                                       cmocka_unit_test(test_export), cmocka_unit_test(test_usage)};
+                                       cmocka_unit_test(test_export), cmocka_unit_test(test_flow),
+                                       cmocka_unit_test(test_usage)};
     if (argc < 2) {
         fprintf(stderr, "usage: test_bench path/to/lineao_bench [slow]\n");
         return 2;
