@@ -205,7 +205,8 @@ VSF_API size_t vsf_mesh_warning_text(const vsf_mesh *mesh, uint32_t i, char *tex
 typedef struct vsf_smooth_desc {
     uint32_t steps;    /* double steps; 0: 20 */
     double lambda, mu; /* 0 < lambda < -mu; both 0: 0.5, -0.53 */
-    int uniform;       /* not 0: neighbours weigh alike, not by cotangents */
+    int uniform; /* not 0: neighbours weigh alike, not by cotangents: evens triangles out, best
+                    for meshes of marching cubes */
 } vsf_smooth_desc;
 /* Taubin's smoothing with cotangent weights of the first shape, negative ones taken as 0 (METHODS
    11.6). Vertices on borders stay. Normals are made anew from the faces. On failure the mesh is

@@ -479,6 +479,57 @@ static void smoothing_keeps_volume_planes_and_borders(void **state) {
     surface_shape_free(&sphere);
 }
 
+static double cotangent(const float *at, const float *a, const float *b) {
+    double u[3], v[3], dot = 0, cross2 = 0, uu = 0, vv = 0;
+    for (int k = 0; k < 3; k++) {
+        u[k] = (double)a[k] - (double)at[k];
+        v[k] = (double)b[k] - (double)at[k];
+        dot += u[k] * v[k];
+        uu += u[k] * u[k];
+        vv += v[k] * v[k];
+    }
+    cross2 = uu * vv - dot * dot;
+    return dot / sqrt(cross2);
+}
+static void smoothing_takes_no_negative_weight(void **state) {
+    /* a fan about vertex 0, with a rim that stays: one double step, by hand. The edge to the far
+       vertex 1 has negative weight, because the angles that look at it are obtuse */
+    static const float points[] = {0, 0, 0.5f, 9, 0, 0, 2, 2, 0, -2, 2, 0, -2, -2, 0, 2, -2, 0};
+    static const uint32_t triangles[] = {0, 1, 2, 0, 2, 3, 0, 3, 4, 0, 4, 5, 0, 5, 1};
+    vsf_smooth_desc once = {1, 0, 0, 0};
+    double w[5], sum = 0, least = 0, want[3];
+    vsf_mesh_desc desc;
+    vsf_mesh mesh;
+    (void)state;
+    memset(&desc, 0, sizeof desc);
+    desc.vertex_count = 6;
+    desc.positions = points;
+    desc.triangle_count = 5;
+    desc.triangles = triangles;
+    desc.flags = VSF_MESH_KEEP_WINDING;
+    for (uint32_t i = 0; i < 5; i++) {
+        const float *rim = points + 3 * (i + 1), *before = points + 3 * ((i + 4) % 5 + 1);
+        const float *after = points + 3 * ((i + 1) % 5 + 1);
+        w[i] = 0.5 * (cotangent(before, points, rim) + cotangent(after, points, rim));
+        least = w[i] < least ? w[i] : least;
+        w[i] = w[i] > 0 ? w[i] : 0;
+        sum += w[i];
+    }
+    assert_true(least < -0.05);
+    for (int k = 0; k < 3; k++) {
+        double mean = 0;
+        for (int i = 0; i < 5; i++)
+            mean += w[i] / sum * (double)points[3 * (i + 1) + k];
+        want[k] = (double)points[k] + 0.5 * (mean - (double)points[k]);
+        want[k] -= 0.53 * (mean - want[k]);
+    }
+    assert_int_equal(vsf_mesh_build(NULL, &desc, &mesh), LAO_OK);
+    assert_int_equal(vsf_mesh_smooth(NULL, &mesh, &once), LAO_OK);
+    for (int k = 0; k < 3; k++)
+        near_to((double)mesh.positions[k], want[k], 1e-6);
+    vsf_mesh_free(&mesh);
+}
+
 static void smoothing_refuses_and_stops(void **state) {
     surface_shape sphere = surface_sphere(1, 1);
     surface_host host;
@@ -689,6 +740,7 @@ int main(void) {
         cmocka_unit_test(keeps_attributes_and_given_normals),
         cmocka_unit_test(smoothing_has_its_transfer),
         cmocka_unit_test(smoothing_keeps_volume_planes_and_borders),
+        cmocka_unit_test(smoothing_takes_no_negative_weight),
         cmocka_unit_test(smoothing_refuses_and_stops),
         cmocka_unit_test(subdivision_is_loops),
         cmocka_unit_test(survives_every_failed_allocation),

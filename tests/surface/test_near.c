@@ -66,6 +66,19 @@ static void oracles_of_a_straight_line(void **state) {
     assert_int_equal(vsf_near_exact(NULL, &n, 8.5, d), LAO_OK); /* [7.5, 9.5] */
     near_to((double)d[0], sqrt(2.5 * 2.5 + 4), 1e-6);
     vsf_near_free(&n);
+    desc.period = 10; /* times count modulo it: x in [9, 10] and [0, 1] are lit at 0 and 10 */
+    assert_int_equal(vsf_near_make(NULL, &desc, &n), LAO_OK);
+    vsf_near_step(&n, 0, d);
+    near_to((double)d[0], sqrt(16 + 4), 1e-6);
+    near_to((double)d[1], 10, 1e-6);
+    for (int turn = -3; turn < 4; turn++) {
+        assert_int_equal(vsf_near_find(&n, 8.5 + 10 * turn, &part), 8);
+        near_to((double)part, 0.5, 1e-6);
+        assert_int_equal(vsf_near_exact(NULL, &n, 8.5 + 10 * turn, d), LAO_OK);
+        near_to((double)d[0], sqrt(2.5 * 2.5 + 4), 1e-6);
+    }
+    vsf_near_free(&n);
+    desc.period = 0;
     desc.flags = VSF_NEAR_POINTS; /* the two points alone */
     assert_int_equal(vsf_near_make(NULL, &desc, &n), LAO_OK);
     vsf_near_step(&n, 0, d);
