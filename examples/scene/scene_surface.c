@@ -102,7 +102,7 @@ typedef struct row {
 // clang-format off
 static const row rows[] = {
     {"aneurysm", "a cerebral artery with an aneurysm and a bleb on it", aneurysm,
-     {-22, -12, -21}, {17, 12, 24}, 0.25, {0.25f, 0.96f, -0.12f}, {0, 0, 1}},
+     {-22, -12, -21}, {17, 12, 24}, 0.3, {0.25f, 0.96f, -0.12f}, {0, 0, 1}},
     {"aorta", "the arch with a bulge in which the scene `flow` flows", aorta,
      {-48, -41, -115}, {57, 48, 49}, 1, {0.96f, -0.28f, 0}, {0, 0, 1}},
     {"liver", "a liver-like organ", liver,
@@ -138,16 +138,37 @@ double scene_surface_distance(const char *name, const double position[3]) {
 
 /* ---- meshing */
 
-static float *sample(const row *r, flow4d_volume *volume) {
-    size_t voxels = (size_t)volume->size[0] * volume->size[1] * volume->size[2];
-    float *values = malloc(voxels * sizeof *values);
-    for (size_t i = 0; values && i < voxels; i++) {
-        double x = (double)(i % volume->size[0]),
-               y = (double)(i / volume->size[0] % volume->size[1]);
-        double z = (double)(i / volume->size[0] / volume->size[1]);
-        const double *m = volume->to_world;
-        values[i] =
-            (float)r->distance(vec3_make(m[0] * x + m[3], m[5] * y + m[7], m[10] * z + m[11]));
+static double voxel(const row *r, const flow4d_volume *volume, double x, double y, double z) {
+    const double *m = volume->to_world;
+    return r->distance(vec3_make(m[0] * x + m[3], m[5] * y + m[7], m[10] * z + m[11]));
+}
+
+/* The voxels of a cube of BLOCK voxels each way. Far from the wall they are as its middle: the
+ * margin is three times what a distance needs, because ours are only near to distances. */
+enum { BLOCK = 6 };
+static void sample_block(const row *r, const flow4d_volume *volume, const uint32_t first[3],
+                         float *values) {
+    const double half = 0.5 * (BLOCK - 1), reach = 3 * half * sqrt(3.0) * volume->to_world[0];
+    const uint32_t *n = volume->size;
+    double middle = voxel(r, volume, first[0] + half, first[1] + half, first[2] + half);
+    for (uint32_t z = first[2]; z < n[2] && z < first[2] + BLOCK; z++) {
+        for (uint32_t y = first[1]; y < n[1] && y < first[1] + BLOCK; y++) {
+            for (uint32_t x = first[0]; x < n[0] && x < first[0] + BLOCK; x++)
+                values[((size_t)z * n[1] + y) * n[0] + x] =
+                    (float)(fabs(middle) > reach ? middle : voxel(r, volume, x, y, z));
+        }
+    }
+}
+
+static float *sample(const row *r, const flow4d_volume *volume) {
+    const uint32_t *n = volume->size;
+    float *values = malloc((size_t)n[0] * n[1] * n[2] * sizeof *values);
+    uint32_t at[3];
+    for (at[2] = 0; values && at[2] < n[2]; at[2] += BLOCK) {
+        for (at[1] = 0; at[1] < n[1]; at[1] += BLOCK) {
+            for (at[0] = 0; at[0] < n[0]; at[0] += BLOCK)
+                sample_block(r, volume, at, values);
+        }
     }
     return values;
 }
