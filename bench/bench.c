@@ -53,10 +53,9 @@ static const char usage[] =
     "\n"
     "Passes are timed with a finish (OpenGL) or timestamps (Vulkan), in the same frames as their\n"
     "floors: floor_lines, the same quads with one flat colour and one target; floor_taps, as many\n"
-    "reads as the occlusion has taps (59), of one image, on every pixel, and nothing else;\n"
-    "floor_fetches, those reads of both images of the anisotropic pass.\n"
-    "X_over_Y: median of the quotients of each frame. occlusion_over_floor, _fetches: by covered\n"
-    "pixel, from least times, less what the background costs, which a frame without lines tells.\n"
+    "reads as the occlusion (59), of the same images, on every pixel, and nothing else.\n"
+    "X_over_Y: median of the quotients of each frame. occlusion_over_floor: by covered pixel,\n"
+    "from least times, less what the background costs, which a frame without lines tells.\n"
     "occlusion_over_covered: a background pixel's cost over a covered one's. peak_mb: the most\n"
     "memory of a process that only draws the first preset.\n";
 

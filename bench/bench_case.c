@@ -360,7 +360,6 @@ static void shot_tell(const side *s, uint32_t preset, uint32_t pixels, cJSON *ou
     const shot *it = &s->shots[preset];
     pixel_cost cost = occlusion_cost(s, preset, pixels);
     double taps = floor_cost(it, "floor_taps", pixels);
-    double fetches = floor_cost(it, "floor_fetches", pixels);
     add_number(out, "first_frame_ms", it->first);
     add_series(out, "frame_ms", &it->frame);
     add_series(out, "pass_sum_ms", &it->sum);
@@ -374,7 +373,6 @@ static void shot_tell(const side *s, uint32_t preset, uint32_t pixels, cJSON *ou
     }
     add_number(out, "lines_over_floor", quotient(lines_find(it), pass_find(it, "floor_lines")));
     add_number(out, "occlusion_over_floor", over(cost.covered, taps));
-    add_number(out, "occlusion_over_fetches", over(cost.covered, fetches));
     add_number(out, "occlusion_pass_over_floor_pass",
                quotient(pass_find(it, "occlusion"), pass_find(it, "floor_taps")));
     add_number(out, "occlusion_ns_per_covered_pixel", cost.covered);

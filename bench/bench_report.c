@@ -131,7 +131,6 @@ static void print_passes(const cJSON *const *presets, int count) {
 
 static void print_preset(const char *name, const cJSON *const *presets, int count) {
     static const char *const values[] = {"lines_over_floor", "occlusion_over_floor",
-                                         "occlusion_over_fetches",
                                          "occlusion_ns_per_covered_pixel"};
     const cJSON *cells[SIDES] = {NULL};
     for (int i = 0; i < count; i++)

@@ -54,8 +54,8 @@ static void expect_quotient(const cJSON *object, const char *name) {
     assert_true(cJSON_IsNull(item) || (cJSON_IsNumber(item) && item->valuedouble >= 0));
 }
 
-static void expect_preset(const cJSON *preset, bool floors, bool anisotropic) {
-    static const char *const passes[] = {"lines",     "level_zero", "level_up",
+static void expect_preset(const cJSON *preset, bool floors) {
+    static const char *const passes[] = {"lines",     "level_zero", "level_one", "level_up",
                                          "occlusion", "shade",      "resolve"};
     const cJSON *row;
     for (size_t i = 0; i < sizeof passes / sizeof *passes; i++)
@@ -66,13 +66,11 @@ static void expect_preset(const cJSON *preset, bool floors, bool anisotropic) {
     }
     assert_int_equal(pass_find(preset, "floor_lines") != NULL, floors);
     assert_int_equal(pass_find(preset, "floor_taps") != NULL, floors);
-    assert_int_equal(pass_find(preset, "floor_fetches") != NULL, floors && anisotropic);
     assert_true(number(preset, "first_frame_ms") > 0);
     expect_times(field(preset, "frame_ms"));
     expect_times(field(preset, "pass_sum_ms"));
     assert_int_equal(cJSON_IsNumber(field(preset, "lines_over_floor")), floors);
     expect_quotient(preset, "occlusion_over_floor");
-    expect_quotient(preset, "occlusion_over_fetches");
     assert_int_equal(cJSON_IsNumber(field(preset, "occlusion_pass_over_floor_pass")), floors);
     field(preset, "occlusion_ns_per_covered_pixel");
     field(preset, "floor_ns_per_pixel");
@@ -89,9 +87,9 @@ static double expect_backend(const cJSON *backend, bool is_gl) {
     bool floors = cJSON_IsTrue(field(backend, "floors"));
     assert_true(floors || !is_gl); /* Vulkan: only with glslangValidator at build time */
     assert_true(strlen(cJSON_GetStringValue(field(backend, "device"))) > 0);
-    expect_preset(field(field(backend, "presets"), "classic"), floors, false);
+    expect_preset(field(field(backend, "presets"), "classic"), floors);
     if (slow)
-        expect_preset(field(field(backend, "presets"), "default"), floors, true);
+        expect_preset(field(field(backend, "presets"), "default"), floors);
     expect_quotients(backend, "anisotropic_over_classic");
     assert_true(number(backend, "peak_mb") > 1);
     return number(backend, "covered_pixels");

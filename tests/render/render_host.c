@@ -638,11 +638,13 @@ const render_image *render_find(const render_result *result, const char *name, u
     return NULL;
 }
 
-/* One component of one texel. Half floats are finite here but for NaN and infinity. */
+/* One component of one texel; a word as a fraction. Half floats are finite here but for NaN and
+ * infinity. */
 static double component(const render_image *image, size_t texel, uint32_t channel) {
     const uint8_t *at = image->data + texel * lao_format_bytes(image->format);
     float value;
     uint16_t half;
+    uint32_t word;
     switch (image->format) {
     case LAO_FORMAT_RGBA8:
         return at[channel] / 255.0;
@@ -653,6 +655,9 @@ static double component(const render_image *image, size_t texel, uint32_t channe
         return ldexp((half & 0x3ff) + ((half & 0x7c00) != 0 ? 1024 : 0),
                      ((half & 0x7c00) != 0 ? (half >> 10 & 31) : 1) - 25) *
                ((half & 0x8000) != 0 ? -1 : 1);
+    case LAO_FORMAT_R32UI:
+        memcpy(&word, at, sizeof word);
+        return word / 4294967296.0;
     default:
         memcpy(&value, at + 4 * channel, sizeof value);
         return (double)value;
@@ -660,7 +665,8 @@ static double component(const render_image *image, size_t texel, uint32_t channe
 }
 
 static uint32_t channels(lao_format format) {
-    return format == LAO_FORMAT_R32F || format == LAO_FORMAT_D32F ? 1 : 4;
+    return format == LAO_FORMAT_R32F || format == LAO_FORMAT_R32UI || format == LAO_FORMAT_D32F ? 1
+                                                                                                : 4;
 }
 
 float *render_floats(const render_image *image, uint32_t channel) {
