@@ -193,7 +193,7 @@ typedef struct vsf_mesh {
    - triangles that run against their neighbours are turned round: of each part the side with less
      area. A closed part is then turned so that its volume is positive: normals point outward;
    - normals are the area-weighted sum of the faces (L14 6.1), areas those of Meyer et al. 2002.
-   Memory: about 90 bytes per triangle and 60 per vertex while building. Fails with NULL_ARGUMENT,
+   Memory: about 100 bytes per triangle and 75 per vertex while building. Fails with NULL_ARGUMENT,
    MEMORY, CANCELLED, MESH_COUNT, MESH_INDEX, MESH_EMPTY, MESH_ATTRIBUTE. Thread: any. */
 VSF_API lao_result vsf_mesh_build(const vsf_host *host, const vsf_mesh_desc *desc, vsf_mesh *mesh);
 VSF_API void vsf_mesh_free(vsf_mesh *mesh);
@@ -373,9 +373,9 @@ typedef struct vsf_near {
 
 /* Computes the table. Segments lie in space-filling order; per time the lit ones get a tree of
    boxes, which vertices descend in such an order too, each starting with its predecessor's
-   distance: the same bits as VSF_NEAR_BRUTE. Memory: `bytes` per vertex and step, and 16 per
-   vertex, 32 per point, 60 per piece lit at a time. Fails with NULL_ARGUMENT, SETTING,
-   LINES_OFFSETS, NEAR_COUNT, MEMORY, CANCELLED. */
+   distance: the same bits as VSF_NEAR_BRUTE. Memory: `bytes` per vertex
+   and step, 16 per vertex, 32 per point (80 while building) and 50 per piece lit at a time. Fails
+   with NULL_ARGUMENT, SETTING, LINES_OFFSETS, NEAR_COUNT, MEMORY, CANCELLED. */
 VSF_API lao_result vsf_near_make(const vsf_host *host, const vsf_near_desc *desc, vsf_near *table);
 VSF_API void vsf_near_free(vsf_near *table);
 /* Another beta (ms^2, > 0). Where lit parts grow, the old distances bound the new ones. The same
