@@ -193,7 +193,7 @@ typedef struct vsf_mesh {
    - triangles that run against their neighbours are turned round: of each part the side with less
      area. A closed part is then turned so that its volume is positive: normals point outward;
    - normals are the area-weighted sum of the faces (L14 6.1), areas those of Meyer et al. 2002.
-   Memory: about 90 bytes per triangle and 60 per vertex while building. Fails with NULL_ARGUMENT,
+   Memory: about 100 bytes per triangle and 75 per vertex while building. Fails with NULL_ARGUMENT,
    MEMORY, CANCELLED, MESH_COUNT, MESH_INDEX, MESH_EMPTY, MESH_ATTRIBUTE. Thread: any. */
 VSF_API lao_result vsf_mesh_build(const vsf_host *host, const vsf_mesh_desc *desc, vsf_mesh *mesh);
 VSF_API void vsf_mesh_free(vsf_mesh *mesh);
@@ -373,9 +373,9 @@ typedef struct vsf_near {
 
 /* Computes the table. Segments lie in space-filling order; per time the lit ones get a tree of
    boxes, which vertices descend in such an order too, each starting with its predecessor's
-   distance: the same bits as VSF_NEAR_BRUTE. Memory: `bytes` per vertex and step, and 16 per
-   vertex, 32 per point, 60 per piece lit at a time. Fails with NULL_ARGUMENT, SETTING,
-   LINES_OFFSETS, NEAR_COUNT, MEMORY, CANCELLED. */
+   distance: the same bits as VSF_NEAR_BRUTE. Memory: `bytes` per vertex
+   and step, 16 per vertex, 32 per point (80 while building) and 50 per piece lit at a time. Fails
+   with NULL_ARGUMENT, SETTING, LINES_OFFSETS, NEAR_COUNT, MEMORY, CANCELLED. */
 VSF_API lao_result vsf_near_make(const vsf_host *host, const vsf_near_desc *desc, vsf_near *table);
 VSF_API void vsf_near_free(vsf_near *table);
 /* Another beta (ms^2, > 0). Where lit parts grow, the old distances bound the new ones. The same
@@ -1948,9 +1948,8 @@ static void vsf__loop_fill(vsf__loop *l) {
         const uint32_t *e = l->edge_vertices + 3 * (size_t)t;
         uint32_t *to = l->triangles + 12 * (size_t)t;
         for (i = 0; i < 3; i++) { /* a corner with its two edges, and the middle */
-            to[3 * i] = c[i];
-            to[3 * i + 1] = e[i];
-            to[3 * i + 2] = e[(i + 2) % 3];
+            const uint32_t corner[3] = {c[i], e[i], e[(i + 2) % 3]};
+            memcpy(to + (size_t)3 * i, corner, sizeof corner);
             to[9 + i] = e[i];
         }
     }
@@ -2335,8 +2334,12 @@ VSF_API lao_result vsf_buffers_make(const vsf_host *host, const vsf_mesh *mesh, 
     for (i = 0; i < mesh->vertex_count; i++) {
         starts[i + 1] = starts[i] + vsf__neighbour_count(mesh, i);
     }
-    for (i = 0; i < 4 * mesh->triangle_count; i++) {
-        b.triangles[i] = i % 4 < 3 ? (float)mesh->triangles[3 * (i / 4) + i % 4] : 0.0f;
+    for (i = 0; i < mesh->triangle_count; i++) {
+        float *to = b.triangles + 4 * (size_t)i;
+        to[0] = (float)mesh->triangles[3 * (size_t)i];
+        to[1] = (float)mesh->triangles[3 * (size_t)i + 1];
+        to[2] = (float)mesh->triangles[3 * (size_t)i + 2];
+        to[3] = 0.0f;
     }
     ringer.mesh = mesh;
     ringer.buffers = &b;
@@ -3059,8 +3062,9 @@ static uint32_t vsf__light_track(const vsf__track *t, double time, double reach,
                                  vsf__piece *pieces) {
     double least = (double)(t->ta < t->tb ? t->ta : t->tb),
            most = (double)(t->ta < t->tb ? t->tb : t->ta);
-    double turn, last;
+    double turn;
     uint32_t count = 0;
+    int turns, i;
     if (!(period > 0)) {
         return most <= time - reach || least >= time + reach
                    ? 0
@@ -3069,9 +3073,10 @@ static uint32_t vsf__light_track(const vsf__track *t, double time, double reach,
     if (2 * reach >= period || most - least > 4 * period) { /* all of it, or all but slivers */
         return vsf__light_window(t, -1e30, 1e30, pieces);
     }
-    last = floor((most - time + reach) / period);
-    for (turn = ceil((least - time - reach) / period); turn <= last; turn += 1) {
-        double now = time + turn * period;
+    turn = ceil((least - time - reach) / period);
+    turns = (int)(floor((most - time + reach) / period) - turn); /* 5 at most */
+    for (i = 0; i <= turns; i++) {
+        double now = time + (turn + i) * period;
         count += vsf__light_window(t, now - reach, now + reach, pieces ? pieces + count : NULL);
     }
     return count;
@@ -3284,7 +3289,7 @@ static float vsf__stored(const void *values, uint32_t bytes, uint64_t i) {
 
 typedef struct vsf__query {
     const vsf__index *index;
-    const vsf__lit *lit;
+    vsf__lit lit;
     const vsf_near *old; /* distances that bound the new ones; NULL: none */
     uint64_t old_first;  /* of the step, in old->values */
     void *out;           /* vertex_count values of the step */
@@ -3308,7 +3313,7 @@ static void vsf__query_vertices(void *arg, uint32_t first, uint32_t end) {
         const float *p = x->positions + 3 * (size_t)i;
         uint32_t vertex = x->vertices[i];
         double bound = 1e18, d2;
-        if (!vsf__finite3(p) || q->lit->piece_count == 0) {
+        if (!vsf__finite3(p) || q->lit.piece_count == 0) {
             vsf__store(q, vertex, VSF_FAR);
             last = -1;
             continue;
@@ -3325,7 +3330,7 @@ static void vsf__query_vertices(void *arg, uint32_t first, uint32_t end) {
             was = was * (q->bytes == 2 ? 1.001 : 1.000001) + room + (q->bytes == 2 ? 1e-7 : 0);
             bound = was < bound && was < 65504 ? was : bound;
         }
-        d2 = q->brute ? vsf__search_all(q->lit, p) : vsf__search(q->lit, p, bound * bound, slack);
+        d2 = q->brute ? vsf__search_all(&q->lit, p) : vsf__search(&q->lit, p, bound * bound, slack);
         last = sqrt(d2);
         vsf__store(q, vertex, (float)last);
     }
@@ -3385,18 +3390,17 @@ static lao_result vsf__near_time(vsf__progress *progress, const vsf_near *n, dou
                                  vsf__query *query, uint64_t *lit_count) {
     const vsf__index *x = (const vsf__index *)n->index;
     lao_allocator allocator = vsf__allocator(progress->host);
-    vsf__lit lit;
     int cancelled;
-    if (vsf__lit_make(&allocator, x, time, n->reach, &lit)) {
+    if (vsf__lit_make(&allocator, x, time, n->reach, &query->lit)) {
         return vsf__fail(progress->host, VSF_LOG_MEMORY, "lit parts at %g ms", time);
     }
     query->index = x;
-    query->lit = &lit;
     query->bytes = n->bytes;
     query->brute = (n->flags & VSF_NEAR_BRUTE) != 0;
     cancelled = vsf__run(progress, x->vertex_count, 512, query, vsf__query_vertices);
-    *lit_count += lit.piece_count;
-    vsf__give(&allocator, lit.memory);
+    *lit_count += query->lit.piece_count;
+    vsf__give(&allocator, query->lit.memory);
+    query->lit.memory = NULL;
     return cancelled ? vsf__fail(progress->host, VSF_LOG_CANCELLED, NULL) : LAO_OK;
 }
 /* Fills n->values, which are new; `old` bounds them where its reach is less. */
