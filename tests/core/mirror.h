@@ -1,7 +1,7 @@
 /* The shared functions on random inputs, in the dialect of the shared text: C and GLSL compile
    these very lines. Row = group of functions, n = number of the input; the inputs come from the
    counter-based hash, so that nothing has to be uploaded. */
-#define MIRROR_ROWS 41u
+#define MIRROR_ROWS 42u
 #define MIRROR_INPUTS 1024u
 
 /* Number k of input n: mostly even in [low, high], now and then an end or 0. */
@@ -233,6 +233,10 @@ LAO_FN lao_v4 mirror(lao_uint row, lao_uint n) {
                               0.0f);
     }
     if (row == 39u) {
+        return mirror_from_v3(lao_shade_luminance(lao_v3_make(u, v, d.x), e, f, 0.1f, d.y, b),
+                              lao_srgb_encode(d.w));
+    }
+    if (row == 40u) {
         return lao_over(lao_v4_make(4.0f * u, 4.0f * v, d.x, d.y), 4.0f, d);
     }
     lao_int show = LAO_I(n % 9u);
