@@ -16,7 +16,7 @@ typedef enum flag_type {
     FLAG_NUMBER,  /* double */
     FLAG_LENGTH,  /* double, at least 0 */
     FLAG_SIZE,    /* uint32_t[2] */
-    FLAG_RANGE,   /* double[2] */
+    FLAG_RANGE,   /* colour_end[2] */
     FLAG_COLOR,   /* double[4] */
     FLAG_PAINT,   /* const char *, a colour or the name of something with colours */
     FLAG_ASSIGN,  /* name=value of a setting */
@@ -52,13 +52,15 @@ static const flag_row flags[] = {
     {"--ortho", NULL, NULL, FLAG_SWITCH, BOTH, ALL(ortho), NULL, "make the automatic camera orthographic"},
     {"--time", NULL, "MS", FLAG_NUMBER, BOTH, ALL(time), NULL, "the time to show (0)"},
     {"--frames", NULL, "N", FLAG_COUNT, CLI_RENDER, ALL(frames), NULL, "a sequence of pictures, its time running over that of the data"},
+    {"--legend", NULL, "SIDE", FLAG_CHOICE, CLI_RENDER, ALL(legend), "off|left|right|bottom", "scale of the attribute's colours in the picture: off, left, right or bottom (off)"},
+    {"--legend-title", NULL, "TEXT", FLAG_TEXT, CLI_RENDER, ALL(legend_title), NULL, "above the scale (the attribute's name, and its unit if known)"},
     {"--dump", NULL, "FILE.exr", FLAG_TEXT, CLI_RENDER, ALL(dump), NULL, "every image of the frame graph as 32-bit floats (OpenEXR)"},
     {"--timings", NULL, "FILE.json", FLAG_TEXT, CLI_RENDER, ALL(timings), NULL, "milliseconds of the frame and of each pass"},
     {"--json", NULL, NULL, FLAG_SWITCH, CLI_INFO | CLI_COMPARE, ALL(json), NULL, "one JSON object on standard output"},
     {"--help", "-h", NULL, FLAG_SWITCH, ANY, ALL(help), NULL, "this text"},
     {"--color", NULL, "#rrggbb", FLAG_PAINT, BOTH, FILE_(color), NULL, "or r,g,b in 0..1, direction, line or the NAME of an attribute"},
-    {"--colormap", NULL, "NAME", FLAG_CHOICE, BOTH, FILE_(colormap), "viridis|inferno|coolwarm|gray", "of attributes: viridis (default), inferno, coolwarm or gray"},
-    {"--range", NULL, "A,B", FLAG_RANGE, BOTH, FILE_(range), NULL, "values at both ends of the colour map (those of the data)"},
+    {"--colormap", NULL, "NAME", FLAG_CHOICE, BOTH, FILE_(colormap), COLOUR_MAPS, "of attributes: " COLOUR_MAPS " (viridis)"},
+    {"--range", NULL, "A,B", FLAG_RANGE, BOTH, FILE_(range), NULL, "values at both ends of the colour map, or percentiles of all (2%,98%)"},
     {"--every", NULL, "N", FLAG_COUNT, BOTH, FILE_(every), NULL, "keep each N-th line"},
     {"--min-length", NULL, "MM", FLAG_LENGTH, BOTH, FILE_(min_length), NULL, "drop shorter lines"},
     {"--bundle", NULL, "NAME", FLAG_TEXT, BOTH, FILE_(bundle), NULL, "keep the lines of this group (TRX group, TT cluster)"},
@@ -134,6 +136,25 @@ bool cli_parse_color(const char *text, double color[4]) {
     }
     memcpy(color, c, sizeof c);
     return true;
+}
+
+/* "0,2.5", "2%,98%", "0,99%": two ends that are not the same. */
+static bool parse_range(const char *text, colour_end ends[2]) {
+    const char *comma = strchr(text, ',');
+    for (int i = 0; i < 2 && comma; i++) {
+        char part[64];
+        const char *from = i ? comma + 1 : text;
+        size_t length = i ? strlen(from) : (size_t)(comma - text);
+        bool percent = length > 0 && from[length - 1] == '%';
+        if (length >= sizeof part)
+            return false;
+        snprintf(part, sizeof part, "%.*s", (int)(length - percent), from);
+        if (!cli_number(part, &ends[i].value) ||
+            (percent && !(ends[i].value >= 0 && ends[i].value <= 100)))
+            return false;
+        ends[i].percent = percent;
+    }
+    return comma && (ends[0].percent != ends[1].percent || ends[0].value != ends[1].value);
 }
 
 /* "align-intensity" and "align_intensity" are the same setting; -1: none. */
@@ -266,7 +287,7 @@ static bool set_flag(parser *p, const flag_row *row, const char *value) {
         ok = parse_size(value, field);
         break;
     case FLAG_RANGE:
-        ok = cli_numbers(value, field, 2) && ((double *)field)[0] != ((double *)field)[1];
+        ok = parse_range(value, field);
         break;
     case FLAG_COLOR:
         ok = cli_parse_color(value, field);
@@ -363,7 +384,10 @@ bool cli_parse(cli_command_bit command, int argc, char **argv, cli_options *out)
     out->backend = "gl";
     out->size[0] = command == CLI_COMPARE ? 640 : 1280;
     out->size[1] = command == CLI_COMPARE ? 480 : 960;
+    out->legend = "off";
     out->all.colormap = "viridis";
+    out->all.range[0] = (colour_end){2, true};
+    out->all.range[1] = (colour_end){98, true};
     cli_parse_color("#f4f4f2", out->background);
     out->files = cli_new((size_t)argc + 1, sizeof *out->files);
     if (!out->files)

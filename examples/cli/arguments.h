@@ -3,6 +3,7 @@
 #ifndef LINEAO_CLI_ARGUMENTS_H
 #define LINEAO_CLI_ARGUMENTS_H
 
+#include "colour.h"
 #include "lineao.h"
 
 #include <stdbool.h>
@@ -17,7 +18,7 @@ typedef struct cli_source {
     lao_settings settings;
     const char *color; /* NULL: automatic */
     const char *colormap;
-    double range[2]; /* of the attribute; equal: from the data */
+    colour_end range[2]; /* values at both ends of the colour map */
     uint32_t every;
     double min_length;
     const char *bundle;
@@ -28,7 +29,8 @@ typedef struct cli_options {
     cli_source *files; /* owned */
     uint32_t file_count;
     const char *scene, *out, *dump, *timings, *backend, *camera, *save_camera, *view;
-    uint32_t lines, frames; /* 0: not given */
+    const char *legend, *legend_title; /* "off" or a side; NULL: name and unit */
+    uint32_t lines, frames;            /* 0: not given */
     uint32_t size[2];
     double time, background[4];
     bool ortho, json, help;

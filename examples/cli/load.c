@@ -130,7 +130,7 @@ static bool load_set(const cli_options *options, const cli_source *source, cli_s
         memcpy(out->origin, set->lines.origin, sizeof out->origin);
     move_origin(&set->lines, out->origin);
     find_times(set, out);
-    return cli_colour(set);
+    return true;
 }
 
 bool cli_scene_load(const cli_options *options, cli_scene *out) {
@@ -146,7 +146,7 @@ bool cli_scene_load(const cli_options *options, cli_scene *out) {
     bool ok = true;
     for (uint32_t i = 0; ok && i < count; i++)
         ok = load_set(options, options->file_count ? &options->files[i] : &options->all, &scene);
-    if (!ok) {
+    if (!ok || !cli_colour(&scene)) {
         cli_scene_free(&scene);
         return false;
     }

@@ -12,6 +12,8 @@ typedef struct cli_set {
     uint8_t *colors;    /* owned; RGBA per point; NULL: `color` */
     float color[4];     /* all zero: lineao's sand */
     const float *times; /* in `lines`, or NULL */
+    const char *value;  /* name of the attribute that `colors` show, or NULL */
+    double range[2];    /* its values at both ends of the source's colour map */
     lao_settings settings;
 } cli_set;
 
@@ -34,7 +36,8 @@ void cli_scene_warn(const cli_scene *scene);
 /* Reads a file with a progress bar; Ctrl-C cancels. False: reported. */
 bool cli_read_file(const cli_source *source, io_lines *out);
 
-/* Colours a set as its source says. False: reported. */
-bool cli_colour(cli_set *set);
+/* Colours the sets as their sources say. Sets that are coloured by the same attribute, map and
+ * range share one range, so that a colour is one value in the whole picture. False: reported. */
+bool cli_colour(cli_scene *scene);
 
 #endif
