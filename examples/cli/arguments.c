@@ -33,13 +33,13 @@ typedef struct flag_row {
 } flag_row;
 
 #define BOTH (CLI_RENDER | CLI_COMPARE)
-#define ANY (CLI_INFO | BOTH)
+#define ANY (CLI_INFO | CLI_SHEET | BOTH)
 #define ALL(field) false, offsetof(cli_options, field)
 #define FILE_(field) true, offsetof(cli_source, field)
 
 // clang-format off
 static const flag_row flags[] = {
-    {"--out", "-o", "FILE.png", FLAG_TEXT, BOTH, ALL(out), NULL, "the picture; with --frames a pattern (out_%04d.png, first = 0)"},
+    {"--out", "-o", "FILE.png", FLAG_TEXT, BOTH | CLI_SHEET, ALL(out), NULL, "the picture; with --frames a pattern (out_%04d.png, first = 0)"},
     {"--scene", NULL, "NAME", FLAG_SCENE, BOTH, ALL(scene), NULL, "embedded scene, when no FILE is given (aorta)"},
     {"--lines", NULL, "N", FLAG_COUNT, BOTH, ALL(lines), NULL, "lines of the embedded scene"},
     {"--size", NULL, "WxH", FLAG_SIZE, BOTH, ALL(size), NULL, "pixels (render: 1280x960, compare: 640x480)"},
@@ -56,6 +56,10 @@ static const flag_row flags[] = {
     {"--legend-title", NULL, "TEXT", FLAG_TEXT, CLI_RENDER, ALL(legend_title), NULL, "above the scale (the attribute's name, and its unit if known)"},
     {"--dump", NULL, "FILE.exr", FLAG_TEXT, CLI_RENDER, ALL(dump), NULL, "every image of the frame graph as 32-bit floats (OpenEXR)"},
     {"--timings", NULL, "FILE.json", FLAG_TEXT, CLI_RENDER, ALL(timings), NULL, "milliseconds of the frame and of each pass"},
+    {"--columns", NULL, "N", FLAG_COUNT, CLI_SHEET, ALL(columns), NULL, "pictures in a row (3)"},
+    {"--title", NULL, "TEXT", FLAG_TEXT, CLI_SHEET, ALL(title), NULL, "above all pictures"},
+    {"--note", NULL, "TEXT", FLAG_TEXT, CLI_SHEET, ALL(note), NULL, "below all pictures"},
+    {"--widest", NULL, "N", FLAG_COUNT, CLI_SHEET, ALL(widest), NULL, "pixels; wider pictures shrink by a whole factor (no limit)"},
     {"--json", NULL, NULL, FLAG_SWITCH, CLI_INFO | CLI_COMPARE, ALL(json), NULL, "one JSON object on standard output"},
     {"--help", "-h", NULL, FLAG_SWITCH, ANY, ALL(help), NULL, "this text"},
     {"--color", NULL, "#rrggbb", FLAG_PAINT, BOTH, FILE_(color), NULL, "or r,g,b in 0..1, direction, line or the NAME of an attribute"},
@@ -323,7 +327,7 @@ static const char *flag_name(const void *user, uint32_t index) {
         if ((flags[i].commands & p->command) && index-- == 0)
             return flags[i].name + 2;
     }
-    return p->command == CLI_INFO ? NULL : setting_name(lao_lines_module(), index);
+    return !(p->command & BOTH) ? NULL : setting_name(lao_lines_module(), index);
 }
 
 static bool unknown_flag(const parser *p, const char *text, size_t length) {
@@ -339,7 +343,7 @@ static int take_flag(parser *p, int argc, char **argv, int at) {
     const char *text = argv[at], *equals = strchr(text, '=');
     size_t length = equals ? (size_t)(equals - text) : strlen(text);
     const flag_row *row = find_flag(p->command, text, length);
-    int setting = row || p->command == CLI_INFO || strncmp(text, "--", 2) != 0
+    int setting = row || !(p->command & BOTH) || strncmp(text, "--", 2) != 0
                       ? -1
                       : find_setting(text + 2, length - 2);
     if (!row && setting < 0)
@@ -362,6 +366,9 @@ static bool check(const parser *p) {
         return true;
     if (p->command == CLI_INFO && o->file_count == 0)
         return cli_fail("info: no FILE is given; write lineao info FILE...");
+    if (p->command == CLI_SHEET && (o->file_count == 0 || !o->out))
+        return cli_fail("sheet: %s; write lineao sheet CAPTION=FILE.png... -o out.png",
+                        o->out ? "no picture is given" : "no output is asked for");
     if (p->command == CLI_RENDER && !o->out && !o->dump && !o->timings && !o->save_camera)
         return cli_fail("render: no output is asked for; write -o out.png");
     if (o->file_count > 0 && (o->scene || o->lines))
@@ -455,6 +462,6 @@ void cli_print_flags(cli_command_bit command) {
     print_rows(command, false, "Flags");
     print_rows(command, true,
                "Lines: before the first FILE for all FILEs, after a FILE for it alone");
-    if (command & CLI_COMPARE || command & CLI_RENDER)
+    if (command & BOTH)
         print_settings();
 }

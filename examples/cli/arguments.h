@@ -10,11 +10,16 @@
 #include <stdint.h>
 
 /* Commands as bits, for the tables. */
-typedef enum cli_command_bit { CLI_INFO = 1, CLI_RENDER = 2, CLI_COMPARE = 4 } cli_command_bit;
+typedef enum cli_command_bit {
+    CLI_INFO = 1,
+    CLI_RENDER = 2,
+    CLI_COMPARE = 4,
+    CLI_SHEET = 8
+} cli_command_bit;
 
 /* One FILE and the flags that hold for it. */
 typedef struct cli_source {
-    const char *path; /* NULL: the embedded scene */
+    const char *path; /* NULL: the embedded scene; of a sheet: "CAPTION=FILE.png" */
     lao_settings settings;
     const char *color; /* NULL: automatic */
     const char *colormap;
@@ -29,8 +34,9 @@ typedef struct cli_options {
     cli_source *files; /* owned */
     uint32_t file_count;
     const char *scene, *out, *dump, *timings, *backend, *camera, *save_camera, *view;
-    const char *legend, *legend_title; /* "off" or a side; NULL: name and unit */
-    uint32_t lines, frames;            /* 0: not given */
+    const char *legend, *legend_title;       /* "off" or a side; NULL: name and unit */
+    const char *title, *note;                /* of a sheet */
+    uint32_t lines, frames, columns, widest; /* 0: not given */
     uint32_t size[2];
     double time, background[4];
     bool ortho, json, help;

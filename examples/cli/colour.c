@@ -126,7 +126,7 @@ static bool add_speed(cli_set *set) {
 
 /* ---- ranges and colours ----------------------------------------------------------------- */
 
-static bool same_scale(const cli_set *a, const cli_set *b) {
+bool cli_same_scale(const cli_set *a, const cli_set *b) {
     bool same = a->value && b->value && strcmp(a->value, b->value) == 0 &&
                 strcmp(a->source->colormap, b->source->colormap) == 0;
     for (int i = 0; i < 2 && same; i++)
@@ -144,7 +144,7 @@ static bool find_range(cli_scene *scene, cli_set *set) {
     size_t count = 0, done = 0;
     for (uint32_t s = 0; s < scene->count; s++) {
         const cli_set *other = &scene->sets[s];
-        if (same_scale(set, other))
+        if (cli_same_scale(set, other))
             count += row_count(&other->lines, find_attribute(&other->lines, other->value));
     }
     double *values = cli_new(count, sizeof *values);
@@ -152,7 +152,7 @@ static bool find_range(cli_scene *scene, cli_set *set) {
         return false;
     for (uint32_t s = 0; s < scene->count; s++) {
         const cli_set *other = &scene->sets[s];
-        if (!same_scale(set, other))
+        if (!cli_same_scale(set, other))
             continue;
         const io_attribute *attribute = find_attribute(&other->lines, other->value);
         for (uint32_t i = 0; i < row_count(&other->lines, attribute); i++)

@@ -2,6 +2,7 @@
 #include "commands.h"
 #include "dump.h"
 #include "image.h"
+#include "legend.h"
 #include "report.h"
 #include "session.h"
 
@@ -47,11 +48,59 @@ static char *frame_path(const char *path, uint32_t frame) {
 
 /* ---- one frame -------------------------------------------------------------------------- */
 
-static bool write_picture(const char *path, cli_session *session, const cli_shot *shot) {
+static const char *unit_of(const char *attribute) {
+    static const char *const units[][2] = {{"time", "ms"}, {"speed", "m/s"}, {"velocity", "m/s"}};
+    for (size_t i = 0; i < sizeof units / sizeof *units; i++) {
+        if (strcmp(units[i][0], attribute) == 0)
+            return units[i][1];
+    }
+    return NULL;
+}
+
+/* One legend for every scale that the sets are coloured by. */
+static bool draw_legends(const cli_options *options, const cli_scene *scene, picture *p) {
+    enum { MOST = 4, TITLE = 128 };
+    static const char *const sides[] = {"left", "right", "bottom"};
+    colour_map *maps = cli_new(MOST, sizeof *maps);
+    char titles[MOST][TITLE];
+    legend legends[MOST];
+    uint32_t count = 0, side = 0;
+    while (strcmp(sides[side], options->legend) != 0) /* one of the flag's choices */
+        side++;
+    for (uint32_t s = 0; maps && s < scene->count && count < MOST; s++) {
+        const cli_set *set = &scene->sets[s];
+        bool known = !set->value;
+        for (uint32_t before = 0; before < s && !known; before++)
+            known = cli_same_scale(&scene->sets[before], set);
+        if (known)
+            continue;
+        const char *unit = unit_of(set->value);
+        snprintf(titles[count], TITLE, "%s%s%s%s", set->value, unit ? " (" : "", unit ? unit : "",
+                 unit ? ")" : "");
+        colour_map_make(set->source->colormap, &maps[count]);
+        legends[count].map = &maps[count];
+        memcpy(legends[count].range, set->range, sizeof set->range);
+        legends[count].title =
+            options->legend_title && count == 0 ? options->legend_title : titles[count];
+        count++;
+    }
+    bool ok =
+        maps && (legend_draw(p, (legend_side)side, legends, count) || cli_fail("out of memory"));
+    free(maps);
+    return ok;
+}
+
+static bool write_picture(const char *path, const cli_options *options, const cli_scene *scene,
+                          cli_session *session, const cli_shot *shot) {
     char error[IMAGE_ERROR_SIZE];
     uint8_t *pixels = cli_session_picture(session);
+    picture whole = {shot->width, shot->height, pixels};
     if (!pixels)
         return false;
+    if (strcmp(options->legend, "off") != 0 && !draw_legends(options, scene, &whole)) {
+        free(pixels);
+        return false;
+    }
     int channels = shot->background[3] < 1 ? 4 : 3;
     for (size_t i = 0; channels == 3 && i < (size_t)shot->width * shot->height; i++)
         memmove(pixels + 3 * i, pixels + 4 * i, 3);
@@ -72,7 +121,8 @@ static bool write_frame(const cli_options *options, const cli_scene *scene, cli_
         char *numbered = frame < 0 ? NULL : frame_path(paths[i], (uint32_t)frame);
         const char *path = numbered ? numbered : paths[i];
         ok = (frame < 0 || numbered) && cli_go_on() &&
-             (i == 0 ? cli_dump(path, session, scene, shot) : write_picture(path, session, shot));
+             (i == 0 ? cli_dump(path, session, scene, shot)
+                     : write_picture(path, options, scene, session, shot));
         free(numbered);
     }
     return ok;

@@ -40,4 +40,7 @@ bool cli_read_file(const cli_source *source, io_lines *out);
  * range share one range, so that a colour is one value in the whole picture. False: reported. */
 bool cli_colour(cli_scene *scene);
 
+/* Do both sets show the same values in the same colours? Then one legend tells of both. */
+bool cli_same_scale(const cli_set *a, const cli_set *b);
+
 #endif

@@ -36,6 +36,9 @@ static const command_row commands[] = {
      "draw with OpenGL and Vulkan and count differing bits",
      "  lineao compare -o sheet.png            GL, VK and difference of every image\n"
      "  lineao compare bundle.trk --json       exit code 1 when a bit differs\n"},
+    {"sheet", CLI_SHEET, cli_sheet_command, "[CAPTION=]FILE.png... -o out.png",
+     "put pictures with captions on one sheet",
+     "  lineao sheet 'no AO=a.png' 'AO=b.png' --columns 2 -o ab.png\n"},
     {"bench", 0, NULL, "[--json]", "time every pass and frame of fixed scenes on both backends",
      ""},
 };
@@ -71,8 +74,9 @@ static const command_row *find_command(const char *name) {
             return &commands[i];
     }
     const char *nearest = cli_nearest(name, command_name, NULL);
-    cli_fail("%s: there is no such command%s%s; commands are info, render, compare, bench, help",
-             name, nearest ? "; did you mean " : "", nearest ? nearest : "");
+    cli_fail(
+        "%s: there is no such command%s%s; commands are info, render, compare, sheet, bench, help",
+        name, nearest ? "; did you mean " : "", nearest ? nearest : "");
     return NULL;
 }
 
@@ -115,8 +119,8 @@ static bool is_one_of(const char *text, const char *a, const char *b) {
 int main(int argc, char **argv) {
     cli_interrupt_hold();
     if (argc < 2) {
-        cli_fail(
-            "no command is given; commands are info, render, compare, bench; see lineao --help");
+        cli_fail("no command is given; commands are info, render, compare, sheet, bench; see "
+                 "lineao --help");
         return CLI_USAGE;
     }
     if (is_one_of(argv[1], "--version", "version"))
