@@ -12,12 +12,12 @@ static void swap(double *x, double *y) {
     *y = v;
 }
 
-/* Moves finite values to the front; how many there are. */
+/* Moves finite values to the front; how many there are. None is lost, for the next call. */
 static size_t gather(double *values, size_t count) {
     size_t kept = 0;
     for (size_t i = 0; i < count; i++) {
         if (isfinite(values[i]))
-            values[kept++] = values[i];
+            swap(&values[kept++], &values[i]);
     }
     return kept;
 }

@@ -270,6 +270,10 @@ static void ranges_always_have_a_width(void **state) {
     assert_true(range[0] == 7 && range[1] == 50);
     colour_range(values, 101, turned, range);
     assert_true(range[0] == 9 && range[1] == -9);
+    const colour_end middle[2] = {{50, true}, {75, true}};
+    double holes[5] = {1, 2, NAN, 4, 5};
+    colour_range(holes, 5, middle, range); /* both of the same four */
+    assert_true(range[0] == 3 && range[1] == 4.25);
     colour_range(none, 2, most, range);
     assert_true(range[0] == -1 && range[1] == 1);
     colour_range(NULL, 0, most, range);
