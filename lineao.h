@@ -22,7 +22,8 @@
        size.width = 1280; size.height = 720;
        lao_view view;
        lao_view_create(context, &size, &view);
-       lao_set sets[1] = {{lines, NULL}};  // NULL: the recommended settings
+       lao_set sets[1] = {0};              // zero: the recommended settings
+       sets[0].lines = lines;
        lao_frame frame = {0};              // and for every frame:
        frame.view = view; frame.sets = sets; frame.set_count = 1;
        memcpy(frame.camera.view, my_view, 64); memcpy(frame.camera.projection, my_projection, 64);
@@ -101,6 +102,10 @@ LAO_API const char *lao_result_text(lao_result result);
     X(LINES_COUNT, LAO_ERROR_INVALID_ARGUMENT, "too many points for 32-bit indices")               \
     X(LINES_MEMORY, LAO_ERROR_OUT_OF_MEMORY, "no memory for the line set")                         \
     X(LINES_HANDLE, LAO_ERROR_STALE_HANDLE, "the lao_lines handle is not alive")                   \
+    X(OBJECT_BUFFER, LAO_ERROR_INVALID_ARGUMENT,                                                   \
+      "a buffer of an object is unknown, given twice, without data or too long")                   \
+    X(OBJECT_MEMORY, LAO_ERROR_OUT_OF_MEMORY, "no memory for the object")                          \
+    X(OBJECT_HANDLE, LAO_ERROR_STALE_HANDLE, "the lao_object handle is not alive")                 \
     X(VIEW_SIZE, LAO_ERROR_INVALID_ARGUMENT,                                                       \
       "the view's size is zero or, times supersampling, above the device limit")                   \
     X(VIEW_MEMORY, LAO_ERROR_OUT_OF_MEMORY, "no memory for the view")                              \
@@ -179,10 +184,13 @@ typedef enum lao_format {
 LAO_API uint32_t lao_format_bytes(lao_format format);
 
 typedef enum lao_size {
-    LAO_SIZE_FULL, /* view size times the setting `supersampling` */
-    LAO_SIZE_VIEW, /* the view's size */
-    LAO_SIZE_FIXED /* width x height of the row */
+    LAO_SIZE_FULL,  /* view size times the setting `supersampling` */
+    LAO_SIZE_VIEW,  /* the view's size */
+    LAO_SIZE_FIXED, /* width x height of the row */
+    LAO_SIZE_ITEMS  /* one texel for each item of the set's object (vertex, node, segment), in rows
+                       of  LAO_ITEMS_WIDTH */
 } lao_size;
+#define LAO_ITEMS_WIDTH 2048u
 
 /* How lao_read turns texels into numbers. */
 typedef enum lao_encoding {
@@ -197,8 +205,8 @@ enum {
     LAO_IMAGE_HISTORY = 2 /* last frame's content is kept */
 };
 
-/* A condition: a setting (of the set's settings) or, with a leading '@', an import: 0 absent, 1
- * readable, 2 writable. */
+/* A condition: a setting (of the set's settings); with a leading '@', an import: 0 absent, 1
+   readable, 2 writable; with a leading '#', a buffer of the set: 0 absent, 1 present. */
 typedef struct lao_when {
     const char *name; /* NULL: always true */
     char compare;     /* '=', '!', '<', '>' */
@@ -237,25 +245,41 @@ typedef enum lao_load {
 } lao_load;
 
 typedef struct lao_reference {
-    const char
-        *image; /* NULL ends the list; "#points" and "#colors" are the buffers of the line set */
+    const char *image; /* NULL ends the list; "#name" is a buffer (lao_buffer_row) */
     lao_level level;
     uint32_t level_index; /* LAO_LEVEL_INDEX; past the last level means the last */
     lao_phase phase;
     lao_load load; /* writes only */
 } lao_reference;
 
-typedef enum lao_pass_kind { LAO_PASS_FULLSCREEN, LAO_PASS_DRAW_LINES } lao_pass_kind;
+typedef enum lao_pass_kind {
+    LAO_PASS_FULLSCREEN, /* one triangle over the image; reads buffers of the set's object */
+    LAO_PASS_DRAW_LINES, /* four vertices for each segment of the set's lines; reads their buffers
+                          */
+    LAO_PASS_DRAW_MESH   /* three vertices for each triangle of the set's object; nothing without
+                            one */
+} lao_pass_kind;
 typedef enum lao_repeat {
     LAO_REPEAT_NONE,
     LAO_REPEAT_LEVELS_UP,   /* level 1 .. last of the first written image */
     LAO_REPEAT_LEVELS_DOWN, /* last - 1 .. 0 */
-    LAO_REPEAT_COUNT        /* as often as the setting `repeat_setting` says */
+    LAO_REPEAT_COUNT,       /* as often as the setting `repeat_setting` says */
+    LAO_REPEAT_WITH_LAST    /* in every turn of the row before that is not WITH_LAST itself, behind
+                               it and at its level; `repeat_setting` (optional): so often each turn */
 } lao_repeat;
 typedef enum lao_scope {
     LAO_SCOPE_FRAME,
     LAO_SCOPE_PER_SET /* consecutive rows replay for each set */
 } lao_scope;
+/* Rows of all modules run stage by stage; within a stage in order of modules and rows. */
+typedef enum lao_stage {
+    LAO_STAGE_DRAW,    /* geometry into the G-buffer and the depth buffer */
+    LAO_STAGE_SHADE,   /* what is made of it, up to the image "shaded" */
+    LAO_STAGE_COMPOSE, /* over the shaded scene of all sets */
+    LAO_STAGE_PRESENT  /* the picture, and what goes back to the host */
+} lao_stage;
+/* By winding in the y-up picture: counter-clockwise triangles are front faces. */
+typedef enum lao_cull { LAO_CULL_NONE, LAO_CULL_BACK, LAO_CULL_FRONT } lao_cull;
 typedef enum lao_blend {
     LAO_BLEND_NONE,
     LAO_BLEND_OVER /* premultiplied */,
@@ -270,6 +294,7 @@ typedef enum lao_depth_test {
                          not */
 } lao_depth_test;
 
+#define LAO_MAX_BUFFERS 16 /* of all modules of a context */
 #define LAO_MAX_READS 28
 #define LAO_MAX_WRITES 6
 #define LAO_MAX_CONSTANTS 12
@@ -279,16 +304,25 @@ typedef struct lao_pass_row {
     const char *name;
     lao_pass_kind kind;
     const char *shader;
+    int variant; /* value of the shader's constant `variant`, for rows that share a shader */
+    lao_stage stage;
     lao_scope scope;
     lao_repeat repeat;
     const char *repeat_setting;
     lao_blend blend;
     lao_depth_test depth; /* with a D32F (or host depth) image among the writes */
+    lao_cull cull;
     lao_when when[LAO_MAX_CONDITIONS];
     lao_reference writes[LAO_MAX_WRITES]; /* colour outputs in location order; a depth image
                                              anywhere among them */
     lao_reference reads[LAO_MAX_READS];   /* index = binding of LAO_TEX in the shader */
 } lao_pass_row;
+
+/* A texel buffer that a line set or an object brings along. */
+typedef struct lao_buffer_row {
+    const char *name;  /* without the '#' of its references */
+    lao_format format; /* RGBA32F, R32F or RGBA8 */
+} lao_buffer_row;
 
 typedef enum lao_setting_type {
     LAO_SETTING_FLOAT,
@@ -326,7 +360,7 @@ typedef struct lao_shader_stage {
 /* Generated by amalgamate.sh from shaders/NAME.glsl. */
 typedef struct lao_shader {
     const char *name;
-    const char *const *constants; /* settings, in order of their constant id */
+    const char *const *constants; /* settings or "variant", in order of their constant id */
     uint32_t constant_count;
     const char *const *texture_names; /* in order of binding */
     const lao_texture_type *texture_types;
@@ -334,6 +368,9 @@ typedef struct lao_shader {
     uint32_t output_count;
     lao_shader_stage vertex; /* empty: the shared full-screen triangle */
     lao_shader_stage fragment;
+    const char *const
+        *prologue; /* lines between the common prologue and the stage's: the module's */
+    uint32_t prologue_count;
 } lao_shader;
 
 /* Everything that a group of effects adds to the graph. A settings struct is `uint64_t set; float
@@ -350,6 +387,8 @@ typedef struct lao_module {
     uint32_t preset_count;
     const lao_shader *shaders; /* NULL: those of lineao_shaders.h */
     uint32_t shader_count;
+    const lao_buffer_row *buffers;
+    uint32_t buffer_count;
 } lao_module;
 
 /* The module of this header: line sets and line ambient occlusion. Static, never NULL. Thread: any.
@@ -520,11 +559,14 @@ typedef struct lao_context lao_context;
 typedef struct lao_lines {
     uint32_t id;
 } lao_lines; /* 0: none */
+typedef struct lao_object {
+    uint32_t id;
+} lao_object; /* 0: none */
 typedef struct lao_view {
     uint32_t id;
 } lao_view; /* 0: none */
 
-#define LAO_BACKEND_ABI 1u
+#define LAO_BACKEND_ABI 2u
 struct lao_backend; /* the seam, below; the host only carries it from lao_*_backend to lao_create */
 
 /* A set of polylines. Points on a line that repeat bit for bit are merged; a line whose first and
@@ -540,6 +582,21 @@ typedef struct lao_lines_desc {
     float color[4];          /* without `colors`: one colour, display values 0..1; all zero: sand */
 } lao_lines_desc;
 
+/* What a set brings for the passes of further modules (a vessel tree, a surface): their texel
+   buffers by name. The headers of the modules make these arrays. */
+typedef struct lao_object_buffer {
+    const char *name;     /* of a lao_buffer_row, which tells the format */
+    const void *data;     /* texel_count texels, tightly packed; copied */
+    uint32_t texel_count; /* 1 or more */
+} lao_object_buffer;
+typedef struct lao_object_desc {
+    const lao_object_buffer *buffers;
+    uint32_t buffer_count;
+    uint32_t triangle_count; /* of LAO_PASS_DRAW_MESH */
+    uint32_t item_count;     /* texels of LAO_SIZE_ITEMS images */
+    float bounds[2][3];      /* axis-aligned box (mm): lower, upper corner */
+} lao_object_desc;
+
 typedef struct lao_view_desc {
     uint32_t width, height; /* px */
     uint32_t flags;         /* LAO_VIEW_... */
@@ -553,9 +610,17 @@ typedef struct lao_set {
     lao_lines lines;              /* id 0: none, a set that draws nothing */
     const lao_settings *settings; /* NULL: the recommended ones. `supersampling` and `depth_unit`
                                      are the first set's */
+    lao_object object;            /* (Optional) for further modules */
+    const void *const *module_settings; /* (Optional) one settings struct, or NULL, for each of
+                                           lao_desc.modules */
 } lao_set;
 
-enum { LAO_FRAME_TIMINGS = 1 /* measure every pass (GL: finishes after each; slow) */ };
+enum {
+    LAO_FRAME_TIMINGS = 1,         /* measure every pass (GL: finishes after each; slow) */
+    LAO_FRAME_SHARED_OCCLUSION = 2 /* sets occlude each other: all are drawn into one G-buffer,
+                                      which is occluded and shaded once, with the first set's
+                                      settings; otherwise each occludes itself alone */
+};
 
 typedef struct lao_frame {
     lao_view view;
@@ -601,6 +666,16 @@ LAO_API lao_result lao_lines_update(lao_context *context, lao_lines lines,
                                     const lao_lines_desc *desc);
 /* Destroys a line set; frames under way keep what they need. */
 LAO_API lao_result lao_lines_destroy(lao_context *context, lao_lines lines);
+/* Uploads an object of further modules. */
+LAO_API lao_result lao_object_create(lao_context *context, const lao_object_desc *desc,
+                                     lao_object *object);
+/* Replaces the buffers named in `desc`, its counts and its box; other buffers stay. On failure
+   nothing changes. */
+LAO_API lao_result lao_object_update(lao_context *context, lao_object object,
+                                     const lao_object_desc *desc);
+/* Destroys an object; frames under way keep what they need. */
+LAO_API lao_result lao_object_destroy(lao_context *context, lao_object object);
+
 /* Axis-aligned box (mm) of the finite points: bounds[0] lower, bounds[1] upper corner. All zero for
  * an empty set. */
 LAO_API lao_result lao_lines_bounds(lao_context *context, lao_lines lines, float bounds[2][3]);
@@ -701,9 +776,10 @@ LAO_API lao_result lao_null_backend(const lao_null_desc *desc, struct lao_backen
    Pure data. */
 
 #define LAO_NO_INDEX 0xffffffffu
-/* Values of lao_plan_step.reads that are no instances. */
-#define LAO_READ_POINTS 0xfffffff0u
-#define LAO_READ_COLORS 0xfffffff1u
+/* Values of lao_plan_step.reads that are no instances: LAO_READ_BUFFER + index in
+ * lao_graph.buffers. */
+#define LAO_READ_BUFFER 0xffffff00u
+#define LAO_READ_IS_BUFFER(read) ((read) >= LAO_READ_BUFFER && (read) != LAO_NO_INDEX)
 
 typedef enum lao_access {
     LAO_ACCESS_NONE,
@@ -761,8 +837,8 @@ typedef struct lao_plan_step {
     lao_plan_write colors[LAO_MAX_WRITES];
     lao_plan_write depth; /* instance LAO_NO_INDEX: no depth attachment */
     uint32_t read_count;
-    uint32_t reads[LAO_MAX_READS]; /* instances, LAO_READ_POINTS, LAO_READ_COLORS; LAO_NO_INDEX:
-                                      does not exist here */
+    uint32_t reads[LAO_MAX_READS]; /* instances, LAO_READ_BUFFER + buffer; LAO_NO_INDEX: does not
+                                      exist here */
     int32_t constants[LAO_MAX_CONSTANTS]; /* values of the shader's constants for this set */
     uint32_t barrier_first, barrier_count;
     float uniforms[8]; /* lao_step_uniforms */
@@ -788,11 +864,13 @@ typedef struct lao_graph {
     uint32_t module_count;
     const lao_image_row *const *images; /* of all modules */
     uint32_t image_count;
-    const lao_pass_row *const *passes; /* of all modules */
+    const lao_pass_row *const *passes; /* of all modules, by stage */
     const uint32_t *pass_modules;
     uint32_t pass_count;
     const char *const *shader_names; /* each once */
     uint32_t shader_count;
+    const lao_buffer_row *buffers[LAO_MAX_BUFFERS]; /* of all modules */
+    uint32_t buffer_count;
 } lao_graph;
 
 typedef struct lao_plan_desc {
@@ -805,6 +883,9 @@ typedef struct lao_plan_desc {
     const lao_import *imports;
     uint32_t import_count;
     uint32_t has_target;
+    uint32_t item_count;       /* the most that an object has */
+    const uint32_t *buffers;   /* per set: bit i: has lao_graph.buffers[i]; NULL: no set has any */
+    uint32_t shared_occlusion; /* LAO_FRAME_SHARED_OCCLUSION */
     const lao_shader *const
         *shaders; /* by index in lao_graph.shader_names; NULL entries allowed without constants */
 } lao_plan_desc;
@@ -851,20 +932,23 @@ typedef struct lao_host {
 } lao_host;
 
 typedef struct lao_buffer_desc {
-    lao_format format; /* RGBA32F or RGBA8 */
+    lao_format format; /* RGBA32F, R32F or RGBA8 */
     uint32_t texel_count;
     const void *data;
 } lao_buffer_desc;
 
-/* A stretch of a line set that fits one texel buffer. Segment s reads texels s .. s + 3. */
+/* What one draw reads and how much it draws: an object, or a stretch of a line set that fits one
+   texel buffer (segment s reads texels s .. s + 3). */
 typedef struct lao_chunk {
-    void *points, *colors; /* backend buffers */
-    uint32_t segment_count;
+    void
+        *buffers[LAO_MAX_BUFFERS]; /* backend buffers by index in lao_graph.buffers; NULL: absent */
+    uint32_t count;                /* segments; triangles */
 } lao_chunk;
 
 typedef struct lao_draw {
-    const lao_chunk *chunks;
+    const lao_chunk *chunks; /* of the lines */
     uint32_t chunk_count;
+    const lao_chunk *object; /* NULL: none */
 } lao_draw;
 
 typedef struct lao_execution {
@@ -874,7 +958,7 @@ typedef struct lao_execution {
     uint32_t frame_size;        /* its bytes */
     const void *set_uniforms; /* blocks of lao_host.settings_size bytes: set * graph.module_count +
                                  module */
-    const lao_draw *draws;    /* per set */
+    const lao_draw *draws;    /* per set; see lao_step_draws */
     uint32_t set_count;       /* at least 1; lao_occlude has one set without chunks */
     const lao_import *imports;
     uint32_t import_count;
@@ -882,6 +966,11 @@ typedef struct lao_execution {
     uint32_t flags;   /* LAO_FRAME_... */
     void *commands;
 } lao_execution;
+
+/* The draws of a step, one chunk each: returns how many. A full-screen step has one, whose chunk
+   holds the buffers of the set's object. Thread: any. */
+LAO_API uint32_t lao_step_draws(const lao_execution *execution, const lao_plan_step *step,
+                                const lao_chunk **chunks);
 
 typedef struct lao_backend {
     uint32_t abi; /* LAO_BACKEND_ABI */
@@ -1030,16 +1119,21 @@ typedef struct lao_m4 lao_m4;
 struct lao_frame_uniforms {
     lao_m4 view;       /* world to canonical view space */
     lao_m4 projection; /* canonical view space to clip space */
+    lao_m4 world;      /* canonical view space to world */
     lao_v4 ray; /* view slope of a pixel centre: x = ray.x * px + ray.z, y = ray.y * py + ray.w */
     lao_v4 viewport; /* supersampled width, height, 1 / width, 1 / height */
     lao_v4 depth; /* z0, 1 / (z1 - z0) of the scene sphere; z1 - z0; 1 for an orthographic camera */
     lao_v4 scale; /* pixels per unit of NDC slope: W/2 * P00, H/2 * P11; 1 for reverse depth; time
                      in ms */
-    lao_v4 unproject;  /* canonical window depth d to view depth z: (x + y d) / (z + w d) */
-    lao_v4 background; /* premultiplied */
-    lao_v4 target;     /* target width, height; 1: flip rows; 1: decode sRGB */
-    lao_v4 host_depth; /* size of the host's depth image; 1: flip rows; depth differences times w
-                          are in depth_unit */
+    lao_v4 unproject;     /* canonical window depth d to view depth z: (x + y d) / (z + w d) */
+    lao_v4 background;    /* premultiplied */
+    lao_v4 target;        /* target width, height; 1: flip rows; 1: decode sRGB */
+    lao_v4 host_depth;    /* size of the host's depth image; 1: flip rows; depth differences times w
+                             are in depth_unit */
+    lao_m4 previous_view; /* of the view's last frame */
+    lao_m4 previous_projection;
+    lao_v4 history; /* frames for which LAO_IMAGE_HISTORY images have been written; 0: they hold
+                       nothing yet */
 };
 /* Per step of the plan. */
 struct lao_step_uniforms {
@@ -1781,37 +1875,37 @@ static const lao_image_row lao__images[] = {
 
 static const lao_pass_row lao__passes[] = {
     /* the host's depth, so that its objects hide our lines */
-    {"import_depth", LAO_PASS_FULLSCREEN, "import_depth", LAO_SCOPE_FRAME, LAO_REPEAT_NONE, NULL, LAO_BLEND_NONE, LAO_DEPTH_ALWAYS, {{"@host_depth", '>', 0}},
+    {"import_depth", LAO_PASS_FULLSCREEN, "import_depth", 0, LAO_STAGE_DRAW, LAO_SCOPE_FRAME, LAO_REPEAT_NONE, NULL, LAO_BLEND_NONE, LAO_DEPTH_ALWAYS, LAO_CULL_NONE, {{"@host_depth", '>', 0}},
      {LAO__WRITE("zbuffer")}, {LAO__READ("host_depth")}},
     /* G-buffer: colour and mask, tangent and zoom, linear depth (METHODS 1.1) */
-    {"lines", LAO_PASS_DRAW_LINES, "lines", LAO_SCOPE_PER_SET, LAO_REPEAT_NONE, NULL, LAO_BLEND_NONE, LAO_DEPTH_NEARER, LAO__ALWAYS,
+    {"lines", LAO_PASS_DRAW_LINES, "lines", 0, LAO_STAGE_DRAW, LAO_SCOPE_PER_SET, LAO_REPEAT_NONE, NULL, LAO_BLEND_NONE, LAO_DEPTH_NEARER, LAO_CULL_NONE, LAO__ALWAYS,
      {LAO__CLEAR("color"), LAO__CLEAR("tangent"), LAO__CLEAR("depth"), LAO__KEEP("zbuffer")}, {LAO__READ("#points"), LAO__READ("#colors")}},
     /* the host's G-buffer instead of our lines: its mask as depth, for the passes that skip background by it */
-    {"cover", LAO_PASS_FULLSCREEN, "cover", LAO_SCOPE_PER_SET, LAO_REPEAT_NONE, NULL, LAO_BLEND_NONE, LAO_DEPTH_ALWAYS, {{"@color", '>', 0}},
+    {"cover", LAO_PASS_FULLSCREEN, "cover", 0, LAO_STAGE_DRAW, LAO_SCOPE_PER_SET, LAO_REPEAT_NONE, NULL, LAO_BLEND_NONE, LAO_DEPTH_ALWAYS, LAO_CULL_NONE, {{"@color", '>', 0}},
      {LAO__CLEAR("zbuffer")}, {LAO__READ("color")}},
     /* level 0 of what a sample reads, and the sums that coarser levels are made of */
-    {"level_zero", LAO_PASS_FULLSCREEN, "level_zero", LAO_SCOPE_PER_SET, LAO_REPEAT_NONE, NULL, LAO_BLEND_NONE, LAO_DEPTH_NONE, {{"occlusion", '=', 1}},
+    {"level_zero", LAO_PASS_FULLSCREEN, "level_zero", 0, LAO_STAGE_SHADE, LAO_SCOPE_PER_SET, LAO_REPEAT_NONE, NULL, LAO_BLEND_NONE, LAO_DEPTH_NONE, LAO_CULL_NONE, {{"occlusion", '=', 1}},
      {LAO__WRITE("tensor"), LAO__WRITE("level_depth"), LAO__WRITE("level_axial"), LAO__WRITE("level_tangent")},
      {LAO__READ("color"), LAO__READ("tangent"), LAO__READ("depth")}},
-    {"level_up", LAO_PASS_FULLSCREEN, "level_up", LAO_SCOPE_PER_SET, LAO_REPEAT_LEVELS_UP, NULL, LAO_BLEND_NONE, LAO_DEPTH_NONE, {{"occlusion", '=', 1}},
+    {"level_up", LAO_PASS_FULLSCREEN, "level_up", 0, LAO_STAGE_SHADE, LAO_SCOPE_PER_SET, LAO_REPEAT_LEVELS_UP, NULL, LAO_BLEND_NONE, LAO_DEPTH_NONE, LAO_CULL_NONE, {{"occlusion", '=', 1}},
      {LAO__WRITE("tensor"), LAO__WRITE("level_depth"), LAO__WRITE("level_axial"), LAO__WRITE("level_tangent")},
      {LAO__READ_FINER("tensor"), LAO__READ_FINER("level_tangent")}},
-    {"occlusion", LAO_PASS_FULLSCREEN, "occlusion", LAO_SCOPE_PER_SET, LAO_REPEAT_NONE, NULL, LAO_BLEND_NONE, LAO_DEPTH_COVERED, {{"occlusion", '=', 1}},
+    {"occlusion", LAO_PASS_FULLSCREEN, "occlusion", 0, LAO_STAGE_SHADE, LAO_SCOPE_PER_SET, LAO_REPEAT_NONE, NULL, LAO_BLEND_NONE, LAO_DEPTH_COVERED, LAO_CULL_NONE, {{"occlusion", '=', 1}},
      {LAO__CLEAR("ao"), LAO__KEEP("zbuffer")},
      {LAO__READ("tangent"), LAO__READ_ALL("level_depth"), LAO__READ_ALL("level_axial"), LAO__READ_ALL("level_tangent")}},
     /* for debugging only: shadows leak into what is not shadowed (Koehler 2017, 4.4) */
-    {"smooth_x", LAO_PASS_FULLSCREEN, "smooth_x", LAO_SCOPE_PER_SET, LAO_REPEAT_COUNT, "smoothing", LAO_BLEND_NONE, LAO_DEPTH_NONE, {{"occlusion", '=', 1}},
+    {"smooth_x", LAO_PASS_FULLSCREEN, "smooth", 0, LAO_STAGE_SHADE, LAO_SCOPE_PER_SET, LAO_REPEAT_COUNT, "smoothing", LAO_BLEND_NONE, LAO_DEPTH_NONE, LAO_CULL_NONE, {{"occlusion", '=', 1}},
      {LAO__OTHER("ao")}, {LAO__READ("ao"), LAO__READ("color")}},
-    {"smooth_y", LAO_PASS_FULLSCREEN, "smooth_y", LAO_SCOPE_PER_SET, LAO_REPEAT_COUNT, "smoothing", LAO_BLEND_NONE, LAO_DEPTH_NONE, {{"occlusion", '=', 1}},
+    {"smooth_y", LAO_PASS_FULLSCREEN, "smooth", 1, LAO_STAGE_SHADE, LAO_SCOPE_PER_SET, LAO_REPEAT_COUNT, "smoothing", LAO_BLEND_NONE, LAO_DEPTH_NONE, LAO_CULL_NONE, {{"occlusion", '=', 1}},
      {LAO__OTHER("ao")}, {LAO__READ("ao"), LAO__READ("color")}},
-    {"shade", LAO_PASS_FULLSCREEN, "shade", LAO_SCOPE_PER_SET, LAO_REPEAT_NONE, NULL, LAO_BLEND_NONE, LAO_DEPTH_COVERED, LAO__ALWAYS,
+    {"shade", LAO_PASS_FULLSCREEN, "shade", 0, LAO_STAGE_SHADE, LAO_SCOPE_PER_SET, LAO_REPEAT_NONE, NULL, LAO_BLEND_NONE, LAO_DEPTH_COVERED, LAO_CULL_NONE, LAO__ALWAYS,
      {LAO__KEEP("shaded"), LAO__KEEP("zbuffer")}, {LAO__READ("color"), LAO__READ("tangent"), LAO__READ("ao")}},
     /* box filter over the samples of a pixel, and the background */
-    {"resolve", LAO_PASS_FULLSCREEN, "resolve", LAO_SCOPE_FRAME, LAO_REPEAT_NONE, NULL, LAO_BLEND_NONE, LAO_DEPTH_NONE, LAO__ALWAYS,
+    {"resolve", LAO_PASS_FULLSCREEN, "resolve", 0, LAO_STAGE_PRESENT, LAO_SCOPE_FRAME, LAO_REPEAT_NONE, NULL, LAO_BLEND_NONE, LAO_DEPTH_NONE, LAO_CULL_NONE, LAO__ALWAYS,
      {LAO__WRITE("out")}, {LAO__READ("shaded")}},
-    {"present", LAO_PASS_FULLSCREEN, "present", LAO_SCOPE_FRAME, LAO_REPEAT_NONE, NULL, LAO_BLEND_OVER, LAO_DEPTH_NONE, {{"@target", '>', 0}},
+    {"present", LAO_PASS_FULLSCREEN, "present", 0, LAO_STAGE_PRESENT, LAO_SCOPE_FRAME, LAO_REPEAT_NONE, NULL, LAO_BLEND_OVER, LAO_DEPTH_NONE, LAO_CULL_NONE, {{"@target", '>', 0}},
      {LAO__KEEP("target")}, {LAO__READ("out")}},
-    {"export_depth", LAO_PASS_FULLSCREEN, "export_depth", LAO_SCOPE_FRAME, LAO_REPEAT_NONE, NULL, LAO_BLEND_NONE, LAO_DEPTH_NEARER, {{"@host_depth", '>', 1}},
+    {"export_depth", LAO_PASS_FULLSCREEN, "export_depth", 0, LAO_STAGE_PRESENT, LAO_SCOPE_FRAME, LAO_REPEAT_NONE, NULL, LAO_BLEND_NONE, LAO_DEPTH_NEARER, LAO_CULL_NONE, {{"@host_depth", '>', 1}},
      {LAO__KEEP("host_depth")}, {LAO__READ("zbuffer")}}
 };
 
@@ -1828,13 +1922,16 @@ static const lao_preset_row lao__presets[] = {
     {"paper", "align", LAO_ALIGN_PAPER}
 };
 
+static const lao_buffer_row lao__buffers[] = {{"points", LAO_FORMAT_RGBA32F}, {"colors", LAO_FORMAT_RGBA8}};
+
 static const lao_module lao__lines_module = {
     "lines",
     lao__passes, (uint32_t)(sizeof lao__passes / sizeof lao__passes[0]),
     lao__images, (uint32_t)(sizeof lao__images / sizeof lao__images[0]),
     lao__settings, (uint32_t)(sizeof lao__settings / sizeof lao__settings[0]),
     lao__presets, (uint32_t)(sizeof lao__presets / sizeof lao__presets[0]),
-    NULL, 0
+    NULL, 0,
+    lao__buffers, (uint32_t)(sizeof lao__buffers / sizeof lao__buffers[0])
 };
 // clang-format on
 
@@ -2192,6 +2289,17 @@ static uint32_t lao__image_find(const lao_graph *graph, const char *name) {
     return LAO_NO_INDEX;
 }
 
+/* Index of a buffer by its reference "#name", or LAO_NO_INDEX. */
+static uint32_t lao__buffer_find(const lao_graph *graph, const char *reference) {
+    uint32_t i;
+    for (i = 0; i < graph->buffer_count; i++) {
+        if (strcmp(graph->buffers[i]->name, reference + 1) == 0) {
+            return i;
+        }
+    }
+    return LAO_NO_INDEX;
+}
+
 /* The module that has a setting of that name, the asking one first; its index within the
  * concatenated values. */
 static uint32_t lao__value_find(const lao_graph *graph, uint32_t module, const char *name) {
@@ -2229,11 +2337,24 @@ static uint32_t lao__shader_name(lao_graph *graph, const char **names, const cha
     return graph->shader_count++;
 }
 
+/* Buffers beyond LAO_MAX_BUFFERS are only counted: lao_graph_check refuses them. */
+static void lao__graph_buffers(lao_graph *graph) {
+    uint32_t m, i;
+    for (m = 0; m < graph->module_count; m++) {
+        for (i = 0; i < graph->modules[m]->buffer_count; i++) {
+            if (graph->buffer_count < LAO_MAX_BUFFERS) {
+                graph->buffers[graph->buffer_count] = &graph->modules[m]->buffers[i];
+            }
+            graph->buffer_count++;
+        }
+    }
+}
+
 lao_result lao_graph_make(const lao_module *const *modules, uint32_t module_count,
                           const lao_allocator *allocator, lao_graph *graph) {
     lao_allocator a = lao__allocator_or_default(allocator);
     lao_graph g;
-    uint32_t m, i, image = 0, pass = 0;
+    uint32_t m, i, stage, image = 0, pass = 0;
     const lao_module **own;
     const lao_image_row **images;
     const lao_pass_row **passes;
@@ -2259,12 +2380,20 @@ lao_result lao_graph_make(const lao_module *const *modules, uint32_t module_coun
         for (i = 0; i < modules[m]->image_count; i++) {
             images[image++] = &modules[m]->images[i];
         }
-        for (i = 0; i < modules[m]->pass_count; i++) {
-            passes[pass] = &modules[m]->passes[i];
-            pass_modules[pass++] = m;
-            lao__shader_name(&g, names, modules[m]->passes[i].shader);
+    }
+    for (stage = LAO_STAGE_DRAW; stage <= LAO_STAGE_PRESENT; stage++) {
+        for (m = 0; m < module_count; m++) {
+            for (i = 0; i < modules[m]->pass_count; i++) {
+                if ((uint32_t)modules[m]->passes[i].stage == stage) {
+                    passes[pass] = &modules[m]->passes[i];
+                    pass_modules[pass++] = m;
+                    lao__shader_name(&g, names, modules[m]->passes[i].shader);
+                }
+            }
         }
     }
+    g.pass_count = pass; /* fewer only where a stage is none of these */
+    lao__graph_buffers(&g);
     *graph = g;
     return LAO_OK;
 }
@@ -2297,6 +2426,17 @@ static int lao__check_names(const lao_graph *graph, char *text, size_t size) {
             if (strcmp(graph->passes[i]->name, graph->passes[k]->name) == 0) {
                 return lao__fault(text, size, "two passes are named '%s'%s", graph->passes[i]->name,
                                   "");
+            }
+        }
+    }
+    if (graph->buffer_count > LAO_MAX_BUFFERS) {
+        return lao__fault(text, size, "the modules have more than 16 buffers%s%s", "", "");
+    }
+    for (i = 0; i < graph->buffer_count; i++) {
+        for (k = 0; k < i; k++) {
+            if (strcmp(graph->buffers[i]->name, graph->buffers[k]->name) == 0) {
+                return lao__fault(text, size, "two buffers are named '%s'%s",
+                                  graph->buffers[i]->name, "");
             }
         }
     }
@@ -2345,6 +2485,12 @@ static int lao__check_when(const lao_graph *graph, uint32_t module, const char *
                                 when->name + 1)
                    : 0;
     }
+    if (when->name[0] == LAO__BUFFER_MARK) {
+        return lao__buffer_find(graph, when->name) == LAO_NO_INDEX
+                   ? lao__fault(text, size, "'%s' asks for the unknown buffer '%s'", owner,
+                                when->name)
+                   : 0;
+    }
     return lao__value_find(graph, module, when->name) == LAO_NO_INDEX
                ? lao__fault(text, size, "'%s' asks for the unknown setting '%s'", owner, when->name)
                : 0;
@@ -2368,7 +2514,7 @@ static int lao__check_row(const lao_graph *graph, uint32_t index, const lao_pass
         uint32_t image;
         int written = 0;
         if (read->image[0] == LAO__BUFFER_MARK) {
-            if (strcmp(read->image, "#points") != 0 && strcmp(read->image, "#colors") != 0) {
+            if (lao__buffer_find(graph, read->image) == LAO_NO_INDEX) {
                 return lao__fault(text, size, "pass '%s' reads the unknown buffer '%s'", row->name,
                                   read->image);
             }
@@ -2457,10 +2603,15 @@ int lao_graph_check(const lao_graph *graph, const lao_shader *shaders, uint32_t 
                 return -1;
             }
         }
-        if (row->repeat == LAO_REPEAT_COUNT &&
-            (!row->repeat_setting ||
+        if ((row->repeat == LAO_REPEAT_COUNT && !row->repeat_setting) ||
+            (row->repeat_setting &&
              lao__value_find(graph, m, row->repeat_setting) == LAO_NO_INDEX)) {
             return lao__fault(text, text_size, "pass '%s' repeats by an unknown setting%s",
+                              row->name, "");
+        }
+        if (row->repeat == LAO_REPEAT_WITH_LAST && (i == 0 || graph->pass_modules[i - 1] != m ||
+                                                    graph->passes[i - 1]->scope != row->scope)) {
+            return lao__fault(text, text_size, "pass '%s' has no row before it to repeat with%s",
                               row->name, "");
         }
         if (lao__check_row(graph, i, row, text, text_size) != 0) {
@@ -2589,6 +2740,9 @@ static int lao__holds(const lao__planner *p, uint32_t module, uint32_t set, cons
             (p->desc->imports[import].source.flags & LAO_HOST_WRITABLE)) {
             value = 2.0f;
         }
+    } else if (when->name[0] == LAO__BUFFER_MARK) {
+        uint32_t present = p->desc->buffers ? p->desc->buffers[set] : 0;
+        value = (float)((present >> lao__buffer_find(p->graph, when->name)) & 1u);
     } else {
         value = lao__value(p, module, set, when->name);
     }
@@ -2611,6 +2765,11 @@ static void lao__level_size(const lao__planner *p, const lao_image_row *row, uin
     if (row->size == LAO_SIZE_FULL) {
         w *= p->supersampling;
         h *= p->supersampling;
+    }
+    if (row->size == LAO_SIZE_ITEMS) {
+        uint32_t items = p->desc->item_count > 0 ? p->desc->item_count : 1;
+        w = items < LAO_ITEMS_WIDTH ? items : LAO_ITEMS_WIDTH;
+        h = items / LAO_ITEMS_WIDTH + (items % LAO_ITEMS_WIDTH != 0);
     }
     for (; level > 0; level--) {
         w = (w + 1) / 2;
@@ -2674,7 +2833,7 @@ static uint32_t lao__resolve(lao__planner *p, const lao_plan_step *step,
     uint32_t image, level = 0, last, phase = 0, i;
     const lao_image_row *row;
     if (reference->image[0] == LAO__BUFFER_MARK) {
-        return strcmp(reference->image, "#points") == 0 ? LAO_READ_POINTS : LAO_READ_COLORS;
+        return LAO_READ_BUFFER + lao__buffer_find(p->graph, reference->image);
     }
     image = lao__image_find(p->graph, reference->image);
     row = p->graph->images[image];
@@ -2739,6 +2898,12 @@ static int lao__is_written(const lao_plan *plan, uint32_t instance, uint32_t end
     return 0;
 }
 
+/* Whether the row draws all sets into one G-buffer. */
+static int lao__draws_together(const lao__planner *p, const lao_pass_row *row) {
+    return p->desc->shared_occlusion && row->stage == LAO_STAGE_DRAW &&
+           row->scope == LAO_SCOPE_PER_SET;
+}
+
 static void lao__step_write(lao__planner *p, lao_plan_step *step, const lao_reference *reference) {
     uint32_t instance = lao__resolve(p, step, reference);
     uint32_t image = lao__image_find(p->graph, reference->image);
@@ -2753,7 +2918,10 @@ static void lao__step_write(lao__planner *p, lao_plan_step *step, const lao_refe
         write.value[0] = 1.0f - write.value[0];
     }
     write.clear = reference->load == LAO_LOAD_DISCARD ? 2 : reference->load == LAO_LOAD_CLEAR;
-    if (reference->load == LAO_LOAD_KEEP && !(row->flags & LAO_IMAGE_IMPORT)) {
+    /* sets that share one G-buffer draw into what the first of them cleared */
+    if ((reference->load == LAO_LOAD_KEEP ||
+         (reference->load == LAO_LOAD_CLEAR && lao__draws_together(p, step->row))) &&
+        !(row->flags & LAO_IMAGE_IMPORT)) {
         write.clear =
             instance != LAO_NO_INDEX && lao__is_written(p->plan, instance, p->plan->step_count) ? 0
                                                                                                 : 1;
@@ -2773,7 +2941,10 @@ static void lao__step_constants(const lao__planner *p, lao_plan_step *step) {
     const lao_shader *shader = p->desc->shaders ? p->desc->shaders[step->shader] : NULL;
     uint32_t i;
     for (i = 0; shader && i < shader->constant_count && i < LAO_MAX_CONSTANTS; i++) {
-        step->constants[i] = (int32_t)lao__value(p, step->module, step->set, shader->constants[i]);
+        step->constants[i] =
+            strcmp(shader->constants[i], "variant") == 0
+                ? (int32_t)step->row->variant
+                : (int32_t)lao__value(p, step->module, step->set, shader->constants[i]);
     }
 }
 
@@ -2827,40 +2998,84 @@ static void lao__step_add(lao__planner *p, uint32_t pass, uint32_t set, uint32_t
     plan->step_count++;
 }
 
+static int lao__row_runs(const lao__planner *p, uint32_t pass, uint32_t set) {
+    const lao_pass_row *row = p->graph->passes[pass];
+    uint32_t i;
+    for (i = 0; i < LAO_MAX_CONDITIONS; i++) {
+        if (!lao__holds(p, p->graph->pass_modules[pass], set, &row->when[i])) {
+            return 0;
+        }
+    }
+    return !lao__imported_away(p, row);
+}
+
+/* One turn of a row, with the rows that repeat with it. */
+static void lao__plan_turn(lao__planner *p, uint32_t pass, uint32_t set, uint32_t level,
+                           uint32_t iteration) {
+    const lao_graph *graph = p->graph;
+    uint32_t i, k, n;
+    lao__step_add(p, pass, set, level, iteration);
+    for (i = pass + 1; i < graph->pass_count && graph->passes[i]->repeat == LAO_REPEAT_WITH_LAST;
+         i++) {
+        const char *setting = graph->passes[i]->repeat_setting;
+        n = setting ? (uint32_t)lao__value(p, graph->pass_modules[i], set, setting) : 1;
+        for (k = 0; k < n && lao__row_runs(p, i, set); k++) {
+            lao__step_add(p, i, set, level, k);
+        }
+    }
+}
+
 static void lao__plan_pass(lao__planner *p, uint32_t pass, uint32_t set) {
     const lao_pass_row *row = p->graph->passes[pass];
     uint32_t module = p->graph->pass_modules[pass], i, n;
     const lao_image_row *first = p->graph->images[lao__image_find(p->graph, row->writes[0].image)];
-    for (i = 0; i < LAO_MAX_CONDITIONS; i++) {
-        if (!lao__holds(p, module, set, &row->when[i])) {
-            return;
-        }
-    }
-    if (lao__imported_away(p, row)) {
+    if (!lao__row_runs(p, pass, set)) {
         return;
     }
     switch (row->repeat) {
     case LAO_REPEAT_NONE:
-        lao__step_add(p, pass, set, 0, 0);
+        lao__plan_turn(p, pass, set, 0, 0);
         break;
     case LAO_REPEAT_LEVELS_UP:
         n = lao__level_count(p, module, set, first);
         for (i = 1; i < n; i++) {
-            lao__step_add(p, pass, set, i, i - 1);
+            lao__plan_turn(p, pass, set, i, i - 1);
         }
         break;
     case LAO_REPEAT_LEVELS_DOWN:
         n = lao__level_count(p, module, set, first);
         for (i = n - 1; i > 0; i--) {
-            lao__step_add(p, pass, set, i - 1, n - 1 - i);
+            lao__plan_turn(p, pass, set, i - 1, n - 1 - i);
         }
         break;
     case LAO_REPEAT_COUNT:
         n = (uint32_t)lao__value(p, module, set, row->repeat_setting);
         for (i = 0; i < n; i++) {
-            lao__step_add(p, pass, set, 0, i);
+            lao__plan_turn(p, pass, set, 0, i);
         }
         break;
+    case LAO_REPEAT_WITH_LAST:
+        break; /* in the turns of the row before */
+    }
+}
+
+/* Consecutive rows of each set. With shared occlusion a row at a time draws all sets, and what
+   comes after drawing runs once, by the first set's settings. */
+static void lao__plan_sets(lao__planner *p, uint32_t first, uint32_t end) {
+    uint32_t i, set;
+    if (!p->desc->shared_occlusion) {
+        for (set = 0; set < p->desc->set_count; set++) {
+            for (i = first; i < end; i++) {
+                lao__plan_pass(p, i, set);
+            }
+        }
+        return;
+    }
+    for (i = first; i < end; i++) {
+        uint32_t count = lao__draws_together(p, p->graph->passes[i]) ? p->desc->set_count : 1;
+        for (set = 0; set < count; set++) {
+            lao__plan_pass(p, i, set);
+        }
     }
 }
 
@@ -2995,7 +3210,7 @@ static void lao__plan_usage(lao_plan *plan) {
 lao_result lao_plan_make(const lao_graph *graph, const lao_plan_desc *desc,
                          const lao_allocator *allocator, lao_plan *plan) {
     lao__planner p;
-    uint32_t pass, end, set, i;
+    uint32_t pass, end;
     memset(&p, 0, sizeof p);
     p.graph = graph;
     p.desc = desc;
@@ -3019,11 +3234,7 @@ lao_result lao_plan_make(const lao_graph *graph, const lao_plan_desc *desc,
         while (end < graph->pass_count && graph->passes[end]->scope == LAO_SCOPE_PER_SET) {
             end++;
         }
-        for (set = 0; set < desc->set_count; set++) {
-            for (i = pass; i < end; i++) {
-                lao__plan_pass(&p, i, set);
-            }
-        }
+        lao__plan_sets(&p, pass, end);
     }
     if (!p.failed) {
         lao__plan_slots(&p);
@@ -3044,8 +3255,9 @@ static void lao__print_instance(const lao_graph *graph, const lao_plan *plan, ui
                                 void (*write)(void *, const char *), void *user) {
     char text[96];
     const lao_plan_instance *instance;
-    if (index == LAO_READ_POINTS || index == LAO_READ_COLORS) {
-        write(user, index == LAO_READ_POINTS ? " #points" : " #colors");
+    if (LAO_READ_IS_BUFFER(index)) {
+        snprintf(text, sizeof text, " #%s", graph->buffers[index - LAO_READ_BUFFER]->name);
+        write(user, text);
         return;
     }
     if (index == LAO_NO_INDEX) {
@@ -3105,12 +3317,20 @@ void lao_plan_print(const lao_graph *graph, const lao_plan *plan,
 /* =============================================================================================================
  * context */
 
+#define LAO__KEY_SIZE 9
+
 typedef struct lao__lines {
     lao_chunk *chunks;
     uint32_t chunk_count;
     float bounds[2][3];
     int has_points;
 } lao__lines;
+
+typedef struct lao__object {
+    lao_chunk chunk;
+    uint32_t item_count;
+    float bounds[2][3];
+} lao__object;
 
 typedef struct lao__view {
     uint32_t width, height, flags;
@@ -3120,10 +3340,13 @@ typedef struct lao__view {
     const float **value_rows;
     uint8_t *uniforms; /* settings blocks of all sets */
     lao_draw *draws;
+    uint32_t *buffers; /* per set: which buffers it has */
     uint32_t set_capacity;
-    uint32_t key[8]; /* structure: size, sets, imports, ... */
-    uint32_t set_count;
-    uint32_t frame; /* counts rendered frames */
+    uint32_t key[LAO__KEY_SIZE]; /* structure: size, sets, imports, ... */
+    uint32_t item_count;         /* the most of its objects */
+    uint32_t frame;              /* counts rendered frames */
+    uint32_t history;            /* of them, since the plan was made */
+    lao_camera previous;         /* canonical camera of the last one */
     int prepared, rendered, timed;
 } lao__view;
 
@@ -3147,7 +3370,7 @@ struct lao_context {
     lao_graph graph;
     const lao_shader **shaders; /* by graph.shader_names */
     uint32_t value_count;       /* settings of all modules */
-    lao__pool lines, views;
+    lao__pool lines, objects, views;
     uint32_t next_serial;
 };
 
@@ -3311,15 +3534,20 @@ lao_result lao_create(const lao_desc *desc, lao_context **context) {
     return LAO_OK;
 }
 
+static void lao__chunk_clear(lao_context *context, lao_chunk *chunk) {
+    uint32_t i;
+    for (i = 0; i < LAO_MAX_BUFFERS; i++) {
+        if (chunk->buffers[i]) {
+            context->backend.buffer_destroy(context->self, chunk->buffers[i]);
+        }
+    }
+    memset(chunk, 0, sizeof *chunk);
+}
+
 static void lao__lines_clear(lao_context *context, lao__lines *lines) {
     uint32_t i;
     for (i = 0; i < lines->chunk_count; i++) {
-        if (lines->chunks[i].points) {
-            context->backend.buffer_destroy(context->self, lines->chunks[i].points);
-        }
-        if (lines->chunks[i].colors) {
-            context->backend.buffer_destroy(context->self, lines->chunks[i].colors);
-        }
+        lao__chunk_clear(context, &lines->chunks[i]);
     }
     lao__delete(&context->allocator, lines->chunks, lines->chunk_count, sizeof *lines->chunks);
     memset(lines, 0, sizeof *lines);
@@ -3333,10 +3561,12 @@ static void lao__view_frames_free(lao_context *context, lao__view *view) {
     lao__delete(&context->allocator, view->uniforms,
                 (size_t)n * modules * context->host.settings_size, 1);
     lao__delete(&context->allocator, view->draws, n, sizeof *view->draws);
+    lao__delete(&context->allocator, view->buffers, n, sizeof *view->buffers);
     view->values = NULL;
     view->value_rows = NULL;
     view->uniforms = NULL;
     view->draws = NULL;
+    view->buffers = NULL;
     view->set_capacity = 0;
 }
 
@@ -3347,6 +3577,11 @@ static void lao__view_free(lao_context *context, lao__view *view) {
     lao_plan_free(&context->allocator, &view->plan);
     lao__view_frames_free(context, view);
     lao__delete(&context->allocator, view, 1, sizeof *view);
+}
+
+static void lao__object_free(lao_context *context, lao__object *object) {
+    lao__chunk_clear(context, &object->chunk);
+    lao__delete(&context->allocator, object, 1, sizeof *object);
 }
 
 void lao_destroy(lao_context *context) {
@@ -3367,6 +3602,11 @@ void lao_destroy(lao_context *context) {
                         sizeof(lao__lines));
         }
     }
+    for (i = 0; i < context->objects.count; i++) {
+        if (context->objects.handles[i].object) {
+            lao__object_free(context, (lao__object *)context->objects.handles[i].object);
+        }
+    }
     if (context->self) {
         context->backend.detach(context->self);
     }
@@ -3374,6 +3614,8 @@ void lao_destroy(lao_context *context) {
                 sizeof *context->views.handles);
     lao__delete(&context->allocator, context->lines.handles, context->lines.capacity,
                 sizeof *context->lines.handles);
+    lao__delete(&context->allocator, context->objects.handles, context->objects.capacity,
+                sizeof *context->objects.handles);
     lao__delete(&context->allocator, (void *)context->shaders, context->graph.pass_count,
                 sizeof *context->shaders);
     lao_graph_free(&context->allocator, &context->graph);
@@ -3502,6 +3744,9 @@ static void lao__lines_box(lao__lines *lines, const lao_lines_desc *desc) {
     }
 }
 
+/* Rows of the line module's buffers, which stand first in every graph. */
+enum { LAO__BUFFER_POINTS, LAO__BUFFER_COLORS };
+
 static lao_result lao__chunk_make(lao_context *context, lao_chunk *chunk, const lao__texels *texels,
                                   uint64_t first, uint32_t count) {
     lao_buffer_desc buffer;
@@ -3509,13 +3754,15 @@ static lao_result lao__chunk_make(lao_context *context, lao_chunk *chunk, const 
     buffer.texel_count = count;
     buffer.format = LAO_FORMAT_RGBA32F;
     buffer.data = texels->points + 4 * first;
-    result = context->backend.buffer_create(context->self, &buffer, &chunk->points);
+    result =
+        context->backend.buffer_create(context->self, &buffer, &chunk->buffers[LAO__BUFFER_POINTS]);
     if (result == LAO_OK) {
         buffer.format = LAO_FORMAT_RGBA8;
         buffer.data = texels->colors + 4 * first;
-        result = context->backend.buffer_create(context->self, &buffer, &chunk->colors);
+        result = context->backend.buffer_create(context->self, &buffer,
+                                                &chunk->buffers[LAO__BUFFER_COLORS]);
     }
-    chunk->segment_count = count - 3;
+    chunk->count = count - 3;
     return result;
 }
 
@@ -3668,6 +3915,125 @@ lao_result lao_lines_bounds(lao_context *context, lao_lines lines, float bounds[
 }
 
 /* ===============================================================================================================
+ * objects */
+
+static lao_result lao__object_check(lao_context *context, const lao_object_desc *desc) {
+    uint32_t i, k;
+    if (desc->buffer_count > 0 && !desc->buffers) {
+        return lao__fail(context, LAO_LOG_NULL_ARGUMENT, "lao_object_desc.buffers");
+    }
+    for (i = 0; i < desc->buffer_count; i++) {
+        const lao_object_buffer *buffer = &desc->buffers[i];
+        uint32_t known = 0;
+        for (k = 0; buffer->name && k < context->graph.buffer_count; k++) {
+            known += strcmp(context->graph.buffers[k]->name, buffer->name) == 0;
+        }
+        for (k = 0; known && k < i; k++) {
+            known = strcmp(desc->buffers[k].name, buffer->name) != 0 && known;
+        }
+        if (!known || !buffer->data || buffer->texel_count == 0 ||
+            buffer->texel_count > context->caps.max_buffer_texels) {
+            return lao__fail(context, LAO_LOG_OBJECT_BUFFER,
+                             buffer->name ? buffer->name : "(no name)");
+        }
+    }
+    if (desc->triangle_count > 0x2aaaaaaau) {
+        return lao__fail(context, LAO_LOG_OBJECT_BUFFER, "triangle_count is beyond 32-bit indices");
+    }
+    return LAO_OK;
+}
+
+/* Uploads all buffers of desc, then puts them into `object` in place of those that are there. */
+static lao_result lao__object_fill(lao_context *context, const lao_object_desc *desc,
+                                   lao__object *object) {
+    lao_chunk fresh;
+    lao_result result = lao__object_check(context, desc);
+    uint32_t i, k;
+    memset(&fresh, 0, sizeof fresh);
+    for (i = 0; i < desc->buffer_count && result == LAO_OK; i++) {
+        lao_buffer_desc buffer;
+        for (k = 0; strcmp(context->graph.buffers[k]->name, desc->buffers[i].name) != 0; k++) {
+        }
+        buffer.format = context->graph.buffers[k]->format;
+        buffer.texel_count = desc->buffers[i].texel_count;
+        buffer.data = desc->buffers[i].data;
+        result = context->backend.buffer_create(context->self, &buffer, &fresh.buffers[k]);
+    }
+    if (result != LAO_OK) {
+        lao__chunk_clear(context, &fresh);
+        return result;
+    }
+    for (i = 0; i < LAO_MAX_BUFFERS; i++) {
+        if (fresh.buffers[i]) {
+            if (object->chunk.buffers[i]) {
+                context->backend.buffer_destroy(context->self, object->chunk.buffers[i]);
+            }
+            object->chunk.buffers[i] = fresh.buffers[i];
+        }
+    }
+    object->chunk.count = desc->triangle_count;
+    object->item_count = desc->item_count;
+    memcpy(object->bounds, desc->bounds, sizeof object->bounds);
+    return LAO_OK;
+}
+
+lao_result lao_object_create(lao_context *context, const lao_object_desc *desc,
+                             lao_object *object) {
+    lao__object *made;
+    lao_result result;
+    uint32_t id;
+    if (!context || !desc || !object) {
+        return context ? lao__fail(context, LAO_LOG_NULL_ARGUMENT, "lao_object_create")
+                       : LAO_ERROR_INVALID_ARGUMENT;
+    }
+    made = (lao__object *)lao__new(&context->allocator, 1, sizeof *made);
+    if (!made) {
+        return lao__fail(context, LAO_LOG_OBJECT_MEMORY, NULL);
+    }
+    result = lao__object_fill(context, desc, made);
+    if (result == LAO_OK) {
+        id = lao__handle_add(&context->allocator, &context->objects, made);
+        if (id) {
+            object->id = id;
+            return LAO_OK;
+        }
+        result = lao__fail(context, LAO_LOG_OBJECT_MEMORY, NULL);
+    }
+    lao__object_free(context, made);
+    return result;
+}
+
+static lao__object *lao__object_get(lao_context *context, lao_object object) {
+    lao__handle *handle = lao__handle_get(&context->objects, object.id);
+    return handle ? (lao__object *)handle->object : NULL;
+}
+
+lao_result lao_object_update(lao_context *context, lao_object object, const lao_object_desc *desc) {
+    lao__object *found;
+    if (!context || !desc) {
+        return context ? lao__fail(context, LAO_LOG_NULL_ARGUMENT, "lao_object_update")
+                       : LAO_ERROR_INVALID_ARGUMENT;
+    }
+    found = lao__object_get(context, object);
+    return found ? lao__object_fill(context, desc, found)
+                 : lao__fail(context, LAO_LOG_OBJECT_HANDLE, "lao_object_update");
+}
+
+lao_result lao_object_destroy(lao_context *context, lao_object object) {
+    lao__handle *handle;
+    if (!context) {
+        return LAO_ERROR_INVALID_ARGUMENT;
+    }
+    handle = lao__handle_get(&context->objects, object.id);
+    if (!handle) {
+        return lao__fail(context, LAO_LOG_OBJECT_HANDLE, "lao_object_destroy");
+    }
+    lao__object_free(context, (lao__object *)handle->object);
+    handle->object = NULL;
+    return LAO_OK;
+}
+
+/* ===============================================================================================================
  * views */
 
 static lao__view *lao__view_get(lao_context *context, lao_view view) {
@@ -3760,7 +4126,8 @@ static lao_result lao__view_reserve(lao_context *context, lao__view *view, uint3
         &context->allocator,
         (size_t)sets * context->graph.module_count * context->host.settings_size, 1);
     view->draws = (lao_draw *)lao__new(&context->allocator, sets, sizeof *view->draws);
-    if (!view->values || !view->value_rows || !view->uniforms || !view->draws) {
+    view->buffers = (uint32_t *)lao__new(&context->allocator, sets, sizeof *view->buffers);
+    if (!view->values || !view->value_rows || !view->uniforms || !view->draws || !view->buffers) {
         lao__view_frames_free(context, view);
         return lao__fail(context, LAO_LOG_FRAME_MEMORY, NULL);
     }
@@ -3769,7 +4136,7 @@ static lao_result lao__view_reserve(lao_context *context, lao__view *view, uint3
 
 /* Resolves one set's settings; sets *structural when a value that shapes the plan changed. */
 static lao_result lao__set_resolve(lao_context *context, lao__view *view, uint32_t set,
-                                   const lao_settings *settings, int *structural) {
+                                   const lao_set *source, int *structural) {
     float *values = view->values + (size_t)set * context->value_count;
     uint32_t m, i, first = 0;
     char text[128];
@@ -3777,9 +4144,15 @@ static lao_result lao__set_resolve(lao_context *context, lao__view *view, uint32
         const lao_module *module = context->graph.modules[m];
         uint8_t *block = view->uniforms + ((size_t)set * context->graph.module_count + m) *
                                               context->host.settings_size;
+        const void *settings = NULL;
         float fresh[LAO__MOST_SETTINGS];
         int fault;
-        fault = lao_settings_resolve(module, m == 0 ? settings : NULL, fresh);
+        if (source && m == 0) {
+            settings = source->settings;
+        } else if (source && source->module_settings) {
+            settings = source->module_settings[m - 1];
+        }
+        fault = lao_settings_resolve(module, settings, fresh);
         if (fault >= 0) {
             const lao_setting_row *row = &module->settings[fault];
             snprintf(text, sizeof text, "%s = %g, must be %g to %g", row->name,
@@ -3803,9 +4176,9 @@ static uint32_t lao__mix(uint32_t h, uint32_t v) {
 
 /* What besides settings shapes a plan. */
 static void lao__plan_key(const lao__view *view, const lao_frame *frame, uint32_t sets,
-                          uint32_t key[8]) {
+                          uint32_t key[LAO__KEY_SIZE]) {
     uint32_t i;
-    memset(key, 0, 8 * sizeof *key);
+    memset(key, 0, LAO__KEY_SIZE * sizeof *key);
     key[0] = view->width;
     key[1] = view->height;
     key[2] = sets;
@@ -3818,6 +4191,10 @@ static void lao__plan_key(const lao__view *view, const lao_frame *frame, uint32_
             key[6] = lao__mix(key[6], (uint32_t)(unsigned char)*c);
         }
         key[6] = lao__mix(key[6], frame->imports[i].source.flags & LAO_HOST_WRITABLE);
+    }
+    key[8] = lao__mix(view->item_count, frame->flags & LAO_FRAME_SHARED_OCCLUSION);
+    for (i = 0; i < sets; i++) {
+        key[8] = lao__mix(key[8], view->buffers[i]);
     }
     /* attachments of pipelines carry the host's formats */
     key[7] = lao__mix(frame->target.native_format, frame->target.flags & LAO_HOST_ENCODE_SRGB);
@@ -3908,8 +4285,12 @@ static lao_result lao__view_plan(lao_context *context, lao__view *view, const la
     desc.import_count = frame->import_count;
     desc.has_target = frame->target.present != 0;
     desc.shaders = context->shaders;
+    desc.item_count = view->item_count;
+    desc.buffers = view->buffers;
+    desc.shared_occlusion = (frame->flags & LAO_FRAME_SHARED_OCCLUSION) != 0;
     view->prepared = 0;
     view->rendered = 0;
+    view->history = 0;
     view->plan.serial = context->next_serial++;
     if (lao_plan_make(&context->graph, &desc, &context->allocator, &view->plan) != LAO_OK) {
         return lao__fail(context, LAO_LOG_PLAN_MEMORY, NULL);
@@ -3935,16 +4316,18 @@ static void lao__scene_sphere(lao_context *context, const lao_frame *frame, floa
         }
         return;
     }
-    for (s = 0; s < frame->set_count; s++) {
-        const lao__lines *lines = lao__lines_get(context, frame->sets[s].lines);
-        if (!lines || !lines->has_points) {
-            continue;
+    for (s = 0; s < 2 * frame->set_count; s++) {
+        const lao_set *set = &frame->sets[s / 2];
+        const lao__lines *lines = s & 1 ? NULL : lao__lines_get(context, set->lines);
+        const lao__object *object = s & 1 ? lao__object_get(context, set->object) : NULL;
+        const float(*box)[3] = lines && lines->has_points ? (const float(*)[3])lines->bounds
+                               : object                   ? (const float(*)[3])object->bounds
+                                                          : NULL;
+        for (k = 0; box && k < 3; k++) {
+            lo[k] = any && lo[k] < box[0][k] ? lo[k] : box[0][k];
+            hi[k] = any && hi[k] > box[1][k] ? hi[k] : box[1][k];
         }
-        for (k = 0; k < 3; k++) {
-            lo[k] = any && lo[k] < lines->bounds[0][k] ? lo[k] : lines->bounds[0][k];
-            hi[k] = any && hi[k] > lines->bounds[1][k] ? hi[k] : lines->bounds[1][k];
-        }
-        any = 1;
+        any |= box != NULL;
     }
     for (k = 0; k < 3; k++) {
         sphere[k] = 0.5 * (lo[k] + hi[k]);
@@ -3967,6 +4350,33 @@ static lao_m4 lao__matrix(const float m[16]) {
     return r;
 }
 
+/* The inverse of an affine matrix; lao_camera_canonical has refused singular ones. */
+static lao_m4 lao__affine_inverse(const float m[16]) {
+    double a[3][3], inverse[3][3], d;
+    float out[16];
+    int r, c;
+    for (r = 0; r < 3; r++) {
+        for (c = 0; c < 3; c++) {
+            a[r][c] = m[c * 4 + r];
+        }
+    }
+    d = lao__determinant3((const double(*)[3])a);
+    memset(out, 0, sizeof out);
+    for (r = 0; r < 3; r++) {
+        for (c = 0; c < 3; c++) { /* cofactors, transposed */
+            int i = (c + 1) % 3, k = (c + 2) % 3, j = (r + 1) % 3, l = (r + 2) % 3;
+            inverse[r][c] = (a[i][j] * a[k][l] - a[i][l] * a[k][j]) / d;
+            out[c * 4 + r] = (float)inverse[r][c];
+        }
+    }
+    for (r = 0; r < 3; r++) {
+        out[12 + r] =
+            (float)-(inverse[r][0] * m[12] + inverse[r][1] * m[13] + inverse[r][2] * m[14]);
+    }
+    out[15] = 1;
+    return lao__matrix(out);
+}
+
 static void lao__frame_uniforms_fill(const lao__view *view, const lao_frame *frame,
                                      const lao_camera *camera, const double sphere[4],
                                      lao_frame_uniforms *u) {
@@ -3981,6 +4391,7 @@ static void lao__frame_uniforms_fill(const lao__view *view, const lao_frame *fra
     memset(u, 0, sizeof *u);
     u->view = lao__matrix(v);
     u->projection = lao__matrix(p);
+    u->world = lao__affine_inverse(v);
     /* ndc = P00 slope - P02 (perspective), P00 x + P03 (orthographic) */
     u->ray.x = (float)(2 / (w * p[0]));
     u->ray.y = (float)(2 / (h * p[5]));
@@ -4011,27 +4422,70 @@ static void lao__frame_uniforms_fill(const lao__view *view, const lao_frame *fra
     }
     u->host_depth.w =
         mm ? (float)range : 1.0f; /* depth differences times this are what the thresholds mean */
+    u->previous_view = lao__matrix(view->history ? view->previous.view : v);
+    u->previous_projection = lao__matrix(view->history ? view->previous.projection : p);
+    u->history.x = (float)(view->history < 0xffffffu ? view->history : 0xffffffu);
+}
+
+/* Settings, lines and object of one set. */
+static lao_result lao__frame_set(lao_context *context, lao__view *view, const lao_set *set,
+                                 uint32_t index, int *structural) {
+    const lao__lines *lines = set ? lao__lines_get(context, set->lines) : NULL;
+    const lao__object *object = set ? lao__object_get(context, set->object) : NULL;
+    lao_draw *draw = &view->draws[index];
+    uint32_t i;
+    if (set && set->lines.id != 0 && !lines) {
+        return lao__fail(context, LAO_LOG_LINES_HANDLE, "lao_frame.sets");
+    }
+    if (set && set->object.id != 0 && !object) {
+        return lao__fail(context, LAO_LOG_OBJECT_HANDLE, "lao_frame.sets");
+    }
+    memset(draw, 0, sizeof *draw);
+    if (lines && lines->chunk_count > 0) {
+        draw->chunks = lines->chunks;
+        draw->chunk_count = lines->chunk_count;
+    }
+    draw->object = object ? &object->chunk : NULL;
+    view->buffers[index] = 0;
+    for (i = 0; i < LAO_MAX_BUFFERS; i++) {
+        if ((draw->chunks && draw->chunks[0].buffers[i]) ||
+            (draw->object && draw->object->buffers[i])) {
+            view->buffers[index] |= 1u << i;
+        }
+    }
+    if (object && object->item_count > view->item_count) {
+        view->item_count = object->item_count;
+    }
+    return lao__set_resolve(context, view, index, set, structural);
 }
 
 static lao_result lao__frame_sets(lao_context *context, lao__view *view, const lao_frame *frame,
                                   uint32_t sets, int *structural) {
+    lao_result result = LAO_OK;
     uint32_t s;
-    for (s = 0; s < sets; s++) {
-        const lao__lines *lines =
-            s < frame->set_count ? lao__lines_get(context, frame->sets[s].lines) : NULL;
-        const lao_settings *settings = s < frame->set_count ? frame->sets[s].settings : NULL;
-        lao_result result;
-        if (s < frame->set_count && frame->sets[s].lines.id != 0 && !lines) {
-            return lao__fail(context, LAO_LOG_LINES_HANDLE, "lao_frame.sets");
-        }
-        result = lao__set_resolve(context, view, s, settings, structural);
-        if (result != LAO_OK) {
-            return result;
-        }
-        view->draws[s].chunks = lines ? lines->chunks : NULL;
-        view->draws[s].chunk_count = lines ? lines->chunk_count : 0;
+    view->item_count = 0;
+    for (s = 0; s < sets && result == LAO_OK; s++) {
+        result = lao__frame_set(context, view, s < frame->set_count ? &frame->sets[s] : NULL, s,
+                                structural);
     }
-    return LAO_OK;
+    return result;
+}
+
+uint32_t lao_step_draws(const lao_execution *execution, const lao_plan_step *step,
+                        const lao_chunk **chunks) {
+    static const lao_chunk nothing = {{NULL}, 0};
+    const lao_draw *draw = &execution->draws[step->set];
+    switch (step->row->kind) {
+    case LAO_PASS_DRAW_LINES:
+        *chunks = draw->chunks;
+        return draw->chunk_count;
+    case LAO_PASS_DRAW_MESH:
+        *chunks = draw->object;
+        return draw->object && draw->object->count > 0;
+    default:
+        *chunks = draw->object ? draw->object : &nothing;
+        return 1;
+    }
 }
 
 static lao_result lao__frame_execute(lao_context *context, lao__view *view, const lao_frame *frame,
@@ -4063,6 +4517,8 @@ static lao_result lao__frame_execute(lao_context *context, lao__view *view, cons
     result = context->backend.execute(context->self, view->backend_view, &execution);
     if (result == LAO_OK) {
         view->frame++;
+        view->history++;
+        view->previous = *camera;
         view->rendered = 1;
         view->timed = (frame->flags & LAO_FRAME_TIMINGS) != 0;
     }
@@ -4073,7 +4529,7 @@ lao_result lao_render(lao_context *context, const lao_frame *frame) {
     lao__view *view;
     lao_camera camera;
     lao_result result;
-    uint32_t sets, key[8];
+    uint32_t sets, key[LAO__KEY_SIZE];
     int structural = 0;
     if (!context || !frame || (frame->set_count > 0 && !frame->sets) ||
         (frame->import_count > 0 && !frame->imports)) {
@@ -4128,7 +4584,7 @@ lao_result lao_occlude(lao_context *context, const lao_frame *frame, const lao_s
         return lao__fail(context, LAO_LOG_IMPORT,
                          "lao_occlude needs color, tangent, depth and a sphere");
     }
-    set.lines.id = 0;
+    memset(&set, 0, sizeof set);
     set.settings = settings;
     own = *frame;
     own.sets = &set;

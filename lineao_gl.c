@@ -42,7 +42,7 @@ typedef unsigned char lao__gl_bool;
 
 // clang-format off
 enum {
-    LAO__GL_FRONT = 0x0404, LAO__GL_BACK = 0x0405, LAO__GL_FRONT_AND_BACK = 0x0408, LAO__GL_LESS = 0x0201,
+    LAO__GL_FRONT = 0x0404, LAO__GL_BACK = 0x0405, LAO__GL_FRONT_AND_BACK = 0x0408, LAO__GL_CCW = 0x0901, LAO__GL_CULL_FACE = 0x0B44, LAO__GL_LESS = 0x0201,
     LAO__GL_GREATER = 0x0204, LAO__GL_ALWAYS = 0x0207, LAO__GL_ONE = 1, LAO__GL_ONE_MINUS_SRC_ALPHA = 0x0303,
     LAO__GL_TRIANGLES = 4, LAO__GL_INVALID_ENUM = 0x0500, LAO__GL_OUT_OF_MEMORY = 0x0505, LAO__GL_CONTEXT_LOST = 0x0507,
     LAO__GL_DEPTH_TEST = 0x0B71,
@@ -134,6 +134,8 @@ static const lao__gl_feature lao__gl_features[] = {
     X(0, void, DeleteTextures, (lao__gl_int count, const lao__gl_uint *names))                                          \
     X(0, void, DeleteVertexArrays, (lao__gl_int count, const lao__gl_uint *names))                                      \
     X(0, void, DepthFunc, (lao__gl_enum function))                                                                      \
+    X(0, void, CullFace, (lao__gl_enum face))                                                                           \
+    X(0, void, FrontFace, (lao__gl_enum winding))                                                                       \
     X(0, void, DepthMask, (lao__gl_bool on))                                                                            \
     X(0, void, DepthRange, (double near_value, double far_value))                                                       \
     X(0, void, Disable, (lao__gl_enum what))                                                                            \
@@ -373,6 +375,8 @@ typedef enum lao__gl_kind {
     LAO__GL_IS_FRAMEBUFFER,
     LAO__GL_IS_DEPTH_MASK,
     LAO__GL_IS_DEPTH_FUNC,
+    LAO__GL_IS_CULL_MODE,
+    LAO__GL_IS_FRONT_FACE,
     LAO__GL_IS_POLYGON_MODE,
     LAO__GL_IS_PROVOKING,
     LAO__GL_IS_CLIP_CONTROL,
@@ -432,7 +436,9 @@ static const lao__gl_row lao__gl_state[] = {
     {"depth mask",          LAO__GL_IS_DEPTH_MASK,      0x0B72, 0,      1,               0, LAO__GL_DRAW,                {1},                         LAO__GL_FIXED,  {1}},
     {"depth function",      LAO__GL_IS_DEPTH_FUNC,      0x0B74, 0,      1,               0, LAO__GL_DRAW,                {LAO__GL_LESS},              LAO__GL_LATER,  {0}},
     {"stencil test",        LAO__GL_IS_TOGGLE,          0x0B90, 0,      1,               0, LAO__GL_DRAW,                {0},                         LAO__GL_FIXED,  {0}},
-    {"cull face",           LAO__GL_IS_TOGGLE,          0x0B44, 0,      1,               0, LAO__GL_DRAW,                {0},                         LAO__GL_FIXED,  {0}},
+    {"cull face",           LAO__GL_IS_TOGGLE,          0x0B44, 0,      1,               0, LAO__GL_DRAW,                {0},                         LAO__GL_LATER,  {0}},
+    {"cull face mode",      LAO__GL_IS_CULL_MODE,       0x0B45, 0,      1,               0, LAO__GL_DRAW,                {LAO__GL_BACK},              LAO__GL_LATER,  {0}},
+    {"front face",          LAO__GL_IS_FRONT_FACE,      0x0B46, 0,      1,               0, LAO__GL_DRAW,                {LAO__GL_CCW},               LAO__GL_FIXED,  {LAO__GL_CCW}},
     {"polygon mode",        LAO__GL_IS_POLYGON_MODE,    0x0B40, 0,      1,               0, LAO__GL_DRAW,                {LAO__GL_FILL, LAO__GL_FILL}, LAO__GL_FIXED, {LAO__GL_FILL, LAO__GL_FILL}},
     {"polygon offset",      LAO__GL_IS_TOGGLE,          0x8037, 0,      1,               0, LAO__GL_DRAW,                {0},                         LAO__GL_FIXED,  {0}},
     {"polygon smooth",      LAO__GL_IS_TOGGLE,          0x0B41, 0,      1,               0, LAO__GL_DRAW,                {0},                         LAO__GL_FIXED,  {0}},
@@ -637,6 +643,8 @@ static void lao__gl_put(const lao__gl *gl, const lao__gl_row *row, uint32_t inde
     case LAO__GL_IS_FRAMEBUFFER:    gl->BindFramebuffer(row->target, value); break;
     case LAO__GL_IS_DEPTH_MASK:     gl->DepthMask(v[0] != 0); break;
     case LAO__GL_IS_DEPTH_FUNC:     gl->DepthFunc(value); break;
+    case LAO__GL_IS_CULL_MODE:      gl->CullFace(value); break;
+    case LAO__GL_IS_FRONT_FACE:     gl->FrontFace(value); break;
     case LAO__GL_IS_POLYGON_MODE:   lao__gl_polygon_mode(gl, v); break;
     case LAO__GL_IS_PROVOKING:      gl->ProvokingVertex(value); break;
     case LAO__GL_IS_CLIP_CONTROL:   gl->ClipControl(value, (lao__gl_enum)v[1]); break;
@@ -738,6 +746,8 @@ static uint32_t lao__gl_stage_text(const lao__gl *gl, const lao_shader *shader,
     }
     for (i = 0; i < lao_shader_prologue_count; i++)
         lines[count++] = lao_shader_prologue[i];
+    for (i = 0; i < shader->prologue_count; i++)
+        lines[count++] = shader->prologue[i];
     for (i = 0; i < stage->line_count; i++)
         lines[count++] = stage->lines[i];
     return count;
@@ -747,9 +757,9 @@ static lao_result lao__gl_stage_make(const lao__gl *gl, const lao_shader *shader
                                      const lao_shader_stage *stage, lao__gl_enum type,
                                      const int32_t *values, lao__gl_uint *name) {
     char text[LAO_MAX_CONSTANTS][LAO__GL_CONSTANT_SIZE], log[LAO__GL_LOG_SIZE] = "";
-    size_t size =
-        (LAO__GL_HEAD + LAO_MAX_CONSTANTS + lao_shader_prologue_count + stage->line_count) *
-        sizeof(char *);
+    size_t size = (LAO__GL_HEAD + LAO_MAX_CONSTANTS + lao_shader_prologue_count +
+                   shader->prologue_count + stage->line_count) *
+                  sizeof(char *);
     const char **lines = (const char **)lao__gl_allocate(gl, size);
     lao__gl_int done = 0;
     uint32_t count;
@@ -780,8 +790,9 @@ static lao_result lao__gl_link(const lao__gl *gl, const lao_shader *shader, cons
     if (!vertex)
         return lao__gl_fail(gl->host, LAO_LOG_GRAPH_BROKEN, "shader %s has no vertex stage",
                             shader->name);
+    /* both stages with the same prologue: the linker compares their blocks */
     result =
-        lao__gl_stage_make(gl, vertex, &vertex->vertex, LAO__GL_VERTEX_SHADER, values, &stages[0]);
+        lao__gl_stage_make(gl, shader, &vertex->vertex, LAO__GL_VERTEX_SHADER, values, &stages[0]);
     if (!result)
         result = lao__gl_stage_make(gl, shader, &shader->fragment, LAO__GL_FRAGMENT_SHADER, values,
                                     &stages[1]);
@@ -1422,6 +1433,8 @@ static void lao__gl_set_tests(const lao__gl *gl, const lao_plan *plan, const lao
         gl->DepthFunc(plan->reverse_depth ? LAO__GL_LESS : LAO__GL_GREATER);
     else
         gl->DepthFunc(LAO__GL_ALWAYS);
+    lao__gl_toggle(gl, LAO__GL_CULL_FACE, step->row->cull != LAO_CULL_NONE);
+    gl->CullFace(step->row->cull == LAO_CULL_FRONT ? LAO__GL_FRONT : LAO__GL_BACK);
 }
 
 static lao_result lao__gl_bind_reads(const lao__gl *gl, const lao__gl_view *view,
@@ -1429,8 +1442,8 @@ static lao_result lao__gl_bind_reads(const lao__gl *gl, const lao__gl_view *view
     uint32_t i;
     for (i = 0; i < step->read_count; i++) {
         const lao_image *image;
-        if (step->reads[i] == LAO_READ_POINTS || step->reads[i] == LAO_READ_COLORS)
-            continue; /* with each chunk */
+        if (LAO_READ_IS_BUFFER(step->reads[i]))
+            continue; /* with each draw */
         image = lao__gl_host_image(execution, step->reads[i]);
         if (image && image->kind != LAO_HOST_TEXTURE)
             return lao__gl_fail(gl->host, LAO_LOG_IMPORT,
@@ -1445,20 +1458,25 @@ static lao_result lao__gl_bind_reads(const lao__gl *gl, const lao__gl_view *view
     return LAO_OK;
 }
 
-static void lao__gl_draw_chunk(const lao__gl *gl, const lao_plan_step *step,
-                               const lao_chunk *chunk) {
-    uint32_t first, count, i;
+static void lao__gl_bind_buffers(const lao__gl *gl, const lao_plan_step *step,
+                                 const lao_chunk *chunk) {
+    uint32_t i;
     for (i = 0; i < step->read_count; i++) {
-        const void *buffer = step->reads[i] == LAO_READ_POINTS   ? chunk->points
-                             : step->reads[i] == LAO_READ_COLORS ? chunk->colors
-                                                                 : NULL;
+        const void *buffer = LAO_READ_IS_BUFFER(step->reads[i])
+                                 ? chunk->buffers[step->reads[i] - LAO_READ_BUFFER]
+                                 : NULL;
         if (!buffer)
             continue;
         gl->ActiveTexture(LAO__GL_TEXTURE0 + i);
         gl->BindTexture(LAO__GL_TEXTURE_BUFFER, ((const lao__gl_buffer *)buffer)->texture);
     }
-    for (first = 0; first < chunk->segment_count; first += count) {
-        count = lao__gl_lower(chunk->segment_count - first, LAO__GL_QUADS);
+}
+
+/* Segments in pieces that 16-bit indices reach. */
+static void lao__gl_draw_segments(const lao__gl *gl, uint32_t segment_count) {
+    uint32_t first, count;
+    for (first = 0; first < segment_count; first += count) {
+        count = lao__gl_lower(segment_count - first, LAO__GL_QUADS);
         gl->DrawElementsBaseVertex(LAO__GL_TRIANGLES, (lao__gl_int)(count * 6),
                                    LAO__GL_UNSIGNED_SHORT, NULL, (lao__gl_int)(first * 4));
     }
@@ -1466,15 +1484,18 @@ static void lao__gl_draw_chunk(const lao__gl *gl, const lao_plan_step *step,
 
 static void lao__gl_draw(const lao__gl *gl, const lao_plan_step *step,
                          const lao_execution *execution) {
-    const lao_draw *draw;
+    const lao_chunk *chunks;
+    const uint32_t count = lao_step_draws(execution, step, &chunks);
     uint32_t i;
-    if (step->row->kind == LAO_PASS_FULLSCREEN) {
-        gl->DrawArrays(LAO__GL_TRIANGLES, 0, 3);
-        return;
+    for (i = 0; i < count; i++) {
+        lao__gl_bind_buffers(gl, step, &chunks[i]);
+        if (step->row->kind == LAO_PASS_DRAW_LINES)
+            lao__gl_draw_segments(gl, chunks[i].count);
+        else if (step->row->kind == LAO_PASS_DRAW_MESH)
+            gl->DrawArrays(LAO__GL_TRIANGLES, 0, (lao__gl_int)(chunks[i].count * 3));
+        else
+            gl->DrawArrays(LAO__GL_TRIANGLES, 0, 3);
     }
-    draw = &execution->draws[step->set];
-    for (i = 0; i < draw->chunk_count; i++)
-        lao__gl_draw_chunk(gl, step, &draw->chunks[i]);
 }
 
 static lao_result lao__gl_run_step(const lao__gl *gl, const lao__gl_view *view, uint32_t index,

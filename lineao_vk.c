@@ -127,6 +127,7 @@ typedef struct lao__vk_key {
     uint32_t shader, blend;
     uint32_t depth_compare; /* VkCompareOp; NEVER: neither test nor write */
     uint32_t depth_read_only;
+    uint32_t cull;
     uint32_t depth_format, color_count;
     uint32_t color_formats[LAO_MAX_WRITES];
     int32_t constants[LAO_MAX_CONSTANTS];
@@ -808,6 +809,7 @@ static int lao__vk_key_make(const lao_plan *plan, const lao_plan_step *step,
     memset(key, 0, sizeof *key);
     key->shader = step->shader;
     key->blend = (uint32_t)step->row->blend;
+    key->cull = (uint32_t)step->row->cull;
     key->color_count = lao__vk_color_count(step);
     memcpy(key->constants, step->constants, sizeof key->constants);
     for (i = 0; i <= key->color_count; i++) {
@@ -882,7 +884,11 @@ static lao_result lao__vk_pipeline_compile(lao__vk *vk, const lao__vk_key *key,
     assembly.topology = VK_PRIMITIVE_TOPOLOGY_TRIANGLE_LIST;
     viewport.viewportCount = viewport.scissorCount = 1;
     raster.polygonMode = VK_POLYGON_MODE_FILL;
-    raster.cullMode = VK_CULL_MODE_NONE;
+    raster.cullMode = key->cull == LAO_CULL_BACK    ? VK_CULL_MODE_BACK_BIT
+                      : key->cull == LAO_CULL_FRONT ? VK_CULL_MODE_FRONT_BIT
+                                                    : VK_CULL_MODE_NONE;
+    raster.frontFace =
+        VK_FRONT_FACE_CLOCKWISE; /* rows count upwards, so it is the other way round */
     raster.lineWidth = 1;
     samples.rasterizationSamples = VK_SAMPLE_COUNT_1_BIT;
     depth.depthCompareOp = (VkCompareOp)key->depth_compare;
@@ -1122,17 +1128,14 @@ static lao_result lao__vk_check_lent(const lao__vk *vk, const lao_execution *exe
     return LAO_OK;
 }
 
-static uint32_t lao__vk_draw_count(const lao_execution *execution, const lao_plan_step *step) {
-    return step->row->kind == LAO_PASS_DRAW_LINES ? execution->draws[step->set].chunk_count : 1;
-}
-
 static lao__vk_need lao__vk_need_of(const lao__vk *vk, const lao_execution *execution) {
     lao__vk_need need = {0, 0, 0};
     uint32_t i, k;
     for (i = 0; i < execution->plan->step_count; i++) {
         const lao_plan_step *step = &execution->plan->steps[i];
         const lao_shader *shader = vk->programs[step->shader].shader;
-        const uint32_t draws = lao__vk_draw_count(execution, step);
+        const lao_chunk *chunks;
+        const uint32_t draws = lao_step_draws(execution, step, &chunks);
         need.sets += draws;
         for (k = 0; k < shader->texture_count; k++)
             *(shader->texture_types[k] == LAO_TEXTURE_2D ? &need.images : &need.texels) += draws;
@@ -1226,11 +1229,7 @@ static VkImageView lao__vk_attachment_view(const lao__vk_build *build,
 }
 
 static VkBufferView lao__vk_texel_view(const lao__vk *vk, const lao_chunk *chunk, uint32_t read) {
-    const void *buffer = NULL;
-    if (chunk && read == LAO_READ_POINTS)
-        buffer = chunk->points;
-    if (chunk && read == LAO_READ_COLORS)
-        buffer = chunk->colors;
+    const void *buffer = LAO_READ_IS_BUFFER(read) ? chunk->buffers[read - LAO_READ_BUFFER] : NULL;
     return buffer ? ((const lao__vk_texels *)buffer)->buffer.view : vk->vacant.view;
 }
 
@@ -1290,16 +1289,15 @@ static lao_result lao__vk_describe_all(const lao__vk *vk, lao__vk_build *build,
     info.descriptorSetCount = 1;
     for (i = 0; i < execution->plan->step_count; i++) {
         const lao_plan_step *step = &execution->plan->steps[i];
-        const lao_draw *draw = &execution->draws[step->set];
-        const uint32_t count = lao__vk_draw_count(execution, step);
+        const lao_chunk *chunks;
+        const uint32_t count = lao_step_draws(execution, step, &chunks);
         for (k = 0; k < count; k++, set++) {
             lao_result result;
             info.pSetLayouts = &vk->programs[step->shader].set_layout;
             result = LAO__VK_TRY(vk, AllocateDescriptorSets, (vk->device, &info, set));
             if (result)
                 return result;
-            lao__vk_describe(vk, build, frame, execution, step,
-                             k < draw->chunk_count ? &draw->chunks[k] : NULL, *set);
+            lao__vk_describe(vk, build, frame, execution, step, &chunks[k], *set);
         }
     }
     return LAO_OK;
@@ -1488,16 +1486,29 @@ static void lao__vk_begin(const lao__vk *vk, const lao__vk_build *build,
     vk->call.CmdSetScissor(commands, 0, 1, &info.renderArea);
 }
 
-/* Draws a chunk in pieces that 16-bit indices reach. */
-static void lao__vk_draw_chunk(const lao__vk *vk, const lao_chunk *chunk,
-                               VkCommandBuffer commands) {
+/* Segments in pieces that 16-bit indices reach. */
+static void lao__vk_draw_segments(const lao__vk *vk, uint32_t segment_count,
+                                  VkCommandBuffer commands) {
     uint32_t first, left;
-    ((lao__vk_texels *)chunk->points)->object.last_use = vk->epoch;
-    ((lao__vk_texels *)chunk->colors)->object.last_use = vk->epoch;
-    for (first = 0; first < chunk->segment_count; first += LAO__VK_QUADS) {
-        left = lao__vk_least(chunk->segment_count - first, LAO__VK_QUADS);
+    for (first = 0; first < segment_count; first += LAO__VK_QUADS) {
+        left = lao__vk_least(segment_count - first, LAO__VK_QUADS);
         vk->call.CmdDrawIndexed(commands, 6 * left, 1, 0, (int32_t)(4 * first), 0);
     }
+}
+
+static void lao__vk_draw(const lao__vk *vk, const lao_plan_step *step, const lao_chunk *chunk,
+                         VkCommandBuffer commands) {
+    uint32_t i;
+    for (i = 0; i < LAO_MAX_BUFFERS; i++) {
+        if (chunk->buffers[i])
+            ((lao__vk_texels *)chunk->buffers[i])->object.last_use = vk->epoch;
+    }
+    if (step->row->kind == LAO_PASS_DRAW_LINES)
+        lao__vk_draw_segments(vk, chunk->count, commands);
+    else if (step->row->kind == LAO_PASS_DRAW_MESH)
+        vk->call.CmdDraw(commands, 3 * chunk->count, 1, 0, 0);
+    else
+        vk->call.CmdDraw(commands, 3, 1, 0, 0);
 }
 
 /* Records one step; `sets` are its descriptor sets, one a draw. */
@@ -1506,8 +1517,8 @@ static void lao__vk_step(const lao__vk *vk, const lao__vk_build *build,
                          const VkDescriptorSet *sets, VkCommandBuffer commands) {
     lao__vk_pipeline *pipeline = build->pipelines[step - execution->plan->steps];
     const VkPipelineLayout layout = vk->programs[step->shader].layout;
-    const lao_draw *draw = &execution->draws[step->set];
-    const uint32_t count = lao__vk_draw_count(execution, step);
+    const lao_chunk *chunks;
+    const uint32_t count = lao_step_draws(execution, step, &chunks);
     uint32_t i;
     pipeline->object.last_use = vk->epoch;
     lao__vk_begin(vk, build, execution, step, commands);
@@ -1519,11 +1530,7 @@ static void lao__vk_step(const lao__vk *vk, const lao__vk_build *build,
     for (i = 0; i < count; i++) {
         vk->call.CmdBindDescriptorSets(commands, VK_PIPELINE_BIND_POINT_GRAPHICS, layout, 0, 1,
                                        &sets[i], 0, NULL);
-        if (step->row->kind == LAO_PASS_DRAW_LINES) {
-            lao__vk_draw_chunk(vk, &draw->chunks[i], commands);
-        } else {
-            vk->call.CmdDraw(commands, 3, 1, 0, 0);
-        }
+        lao__vk_draw(vk, step, &chunks[i], commands);
     }
     vk->call.CmdEndRendering(commands);
 }
@@ -1568,11 +1575,12 @@ static void lao__vk_record(const lao__vk *vk, lao__vk_build *build,
     }
     for (i = 0; i < plan->step_count; i++) {
         const lao_plan_step *step = &plan->steps[i];
+        const lao_chunk *chunks;
         lao__vk_label(vk, commands, step->row->name);
         lao__vk_barriers(vk, build, execution, commands, step->barrier_first,
                          step->barrier_first + step->barrier_count);
         lao__vk_step(vk, build, execution, step, sets, commands);
-        sets += lao__vk_draw_count(execution, step);
+        sets += lao_step_draws(execution, step, &chunks);
         if (timed)
             vk->call.CmdWriteTimestamp(commands, done, build->queries, i + 1);
         lao__vk_label(vk, commands, NULL);

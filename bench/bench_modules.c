@@ -71,6 +71,7 @@ static void add_taps(bench_floors *floors, const char *name, const char *second)
     memset(row, 0, sizeof *row);
     row->name = name;
     row->shader = name;
+    row->stage = LAO_STAGE_SHADE;
     row->scope = LAO_SCOPE_PER_SET;
     row->when[0].name = "occlusion";
     row->when[0].compare = '=';

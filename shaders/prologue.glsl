@@ -5,7 +5,7 @@
 #define LAO_VERTEX_INDEX uint(gl_VertexIndex)
 #define LAO_LOCATED(i) layout(location = i)
 layout(set = 0, binding = 0, std140) uniform lao_frame_block { lao_frame_uniforms lao_frame; };
-layout(set = 0, binding = 1, std140) uniform lao_settings_block { vec4 lao_settings_rows[LAO_SETTINGS_ROWS]; };
+#define LAO_SETTINGS_BLOCK(rows) layout(set = 0, binding = 1, std140) uniform lao_settings_block { vec4 lao_settings_rows[rows]; };
 layout(push_constant, std140) uniform lao_step_block { lao_step_uniforms lao_step; };
 #else
 /* the constant itself stands in front, as text: see lao_shader.constants */
@@ -14,7 +14,7 @@ layout(push_constant, std140) uniform lao_step_block { lao_step_uniforms lao_ste
 #define LAO_VERTEX_INDEX uint(gl_VertexID)
 #define LAO_LOCATED(i)
 layout(std140) uniform lao_frame_block { lao_frame_uniforms lao_frame; };
-layout(std140) uniform lao_settings_block { vec4 lao_settings_rows[LAO_SETTINGS_ROWS]; };
+#define LAO_SETTINGS_BLOCK(rows) layout(std140) uniform lao_settings_block { vec4 lao_settings_rows[rows]; };
 layout(std140) uniform lao_step_block { lao_step_uniforms lao_step; };
 #endif
 

@@ -1,16 +1,15 @@
-/* What amalgamate.sh cannot know from text alone: `settings` prints the accessors of the settings
-   block, `levels` the unrolled samples of the shipped count, from the same functions that the tests
-   prove; `table` and `graph` print the settings for README.md and the frame graph for
-   docs/algorithm.md. Developer's tool, not shipped. */
+/* What amalgamate.sh cannot know from text alone: `settings MODULE` prints the settings block
+   and its accessors, `levels` the unrolled samples of the shipped count, from the same functions
+   that the tests prove; `table` and `graph` print the settings for README.md and the frame graph
+   for docs/algorithm.md. Developer's tool, not shipped. */
 #define LINEAO_IMPLEMENTATION
 #include "lineao.h"
 
 enum { SHIPPED_SAMPLES = 32, MOST_LEVELS = 8 };
 
-static void print_settings(void) {
-    const lao_module *module = lao_lines_module();
+static void print_settings(const lao_module *module) {
     uint32_t i;
-    printf("#define LAO_SETTINGS_ROWS %u\n", (module->setting_count + 3) / 4);
+    printf("LAO_SETTINGS_BLOCK(%u)\n", (module->setting_count + 3) / 4);
     for (i = 0; i < module->setting_count; i++) {
         printf("#define lao_setting_%s (lao_settings_rows[%u].%c)\n", module->settings[i].name,
                i / 4, "xyzw"[i % 4]);
@@ -89,9 +88,14 @@ static void print_levels(void) {
 }
 
 int main(int argc, char **argv) {
-    if (argc == 2 && strcmp(argv[1], "settings") == 0) {
-        print_settings();
-        return 0;
+    const lao_module *modules[1];
+    size_t i;
+    modules[0] = lao_lines_module();
+    for (i = 0; argc == 3 && i < sizeof modules / sizeof modules[0]; i++) {
+        if (strcmp(argv[1], "settings") == 0 && strcmp(argv[2], modules[i]->name) == 0) {
+            print_settings(modules[i]);
+            return 0;
+        }
     }
     if (argc == 2 && strcmp(argv[1], "levels") == 0) {
         print_levels();
@@ -105,6 +109,6 @@ int main(int argc, char **argv) {
         print_graph();
         return 0;
     }
-    fprintf(stderr, "usage: shader_text settings|levels|table|graph\n");
+    fprintf(stderr, "usage: shader_text settings MODULE|levels|table|graph\n");
     return 2;
 }

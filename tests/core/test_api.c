@@ -557,6 +557,7 @@ static int session(core_host *host, uint32_t fail_allocation, uint32_t fail_call
     float bounds[2][3], before[2][3];
 
     memset(host, 0, sizeof *host);
+    memset(sets, 0, sizeof sets);
     core_window_clear();
     core_seen.max_buffer_texels = 6; /* several chunks */
     backend = core_backend(fail_call);
@@ -1208,11 +1209,13 @@ static void bounds_and_the_scene_sphere(void **state) {
  * all log items */
 
 static void every_log_item_of_the_core_was_seen(void **state) {
-    /* Backends alone report these; LINES_COUNT takes four thousand million points. */
+    /* Backends alone report these; LINES_COUNT takes four thousand million points; objects have a
+       test program of their own (test_objects). */
     static const lao_log_item elsewhere[] = {LAO_LOG_BACKEND_FUNCTION, LAO_LOG_BACKEND_FEATURE,
                                              LAO_LOG_DEVICE_MEMORY,    LAO_LOG_SHADER_COMPILE,
                                              LAO_LOG_BACKEND_STATE,    LAO_LOG_DEVICE_LOST,
-                                             LAO_LOG_LINES_COUNT};
+                                             LAO_LOG_LINES_COUNT,      LAO_LOG_OBJECT_BUFFER,
+                                             LAO_LOG_OBJECT_MEMORY,    LAO_LOG_OBJECT_HANDLE};
     (void)state;
     for (int i = 0; i < LAO_LOG_ITEM_COUNT; i++) {
         int expected = 1;

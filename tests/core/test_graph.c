@@ -134,6 +134,9 @@ static void two_settings(tables *t) {
 static void levels_setting(tables *t) {
     t->images[2].levels = "no_such";
 }
+static void first_repeats_with_none(tables *t) {
+    t->passes[0].repeat = LAO_REPEAT_WITH_LAST;
+}
 static void preset_setting(tables *t) {
     t->presets[0].setting = "no_such";
 }
@@ -230,6 +233,7 @@ static void too_many_settings(tables *t) {
 }
 
 static const fault faults[] = {
+    {first_repeats_with_none, "pass 'first' has no row before it to repeat with"},
     {previous_not_kept, "pass 'second' reads the last frame's 'a', which is not kept"},
     {previous_not_written, "pass 'last' reads 'c', which nothing has written"},
     {preset_unknown, "module 'small' has no preset 'no_such'"},
@@ -859,6 +863,64 @@ static void keep_clears_each_level_and_partner_once(void **state) {
     planning_end(&p);
 }
 
+/* A push down a pyramid with two sweeps on every level: each sweep reads what the one before wrote,
+   and the next level starts from the last. */
+static void rows_repeat_together(void **state) {
+    static const char *const order[7] = {"top", "push", "sweep", "sweep", "push", "sweep", "sweep"};
+    static const uint32_t levels[7] = {0, 1, 1, 1, 0, 0, 0};
+    static planning p;
+    tables t;
+    lao_image_row images[2];
+    lao_pass_row passes[4];
+    char text[256];
+    (void)state;
+    tables_fill(&t);
+    images[0] = image_row("field", LAO_FORMAT_RGBA16F, LAO_SIZE_FIXED, "levels", 0);
+    images[1] = image_row("kept", LAO_FORMAT_RGBA16F, LAO_SIZE_FIXED, NULL, LAO_IMAGE_HISTORY);
+    passes[0] = pass_row("top", at("field", LAO_LEVEL_INDEX, 99, LAO_PHASE_THIS, LAO_LOAD_DISCARD),
+                         at("kept", LAO_LEVEL_SAME, 0, LAO_PHASE_PREVIOUS, LAO_LOAD_DISCARD));
+    passes[1] = pass_row("push", simply("field"),
+                         at("field", LAO_LEVEL_COARSER, 0, LAO_PHASE_THIS, LAO_LOAD_DISCARD));
+    passes[1].repeat = LAO_REPEAT_LEVELS_DOWN;
+    passes[2] = pass_row("sweep", at("field", LAO_LEVEL_SAME, 0, LAO_PHASE_OTHER, LAO_LOAD_DISCARD),
+                         simply("field"));
+    passes[2].repeat = LAO_REPEAT_WITH_LAST;
+    passes[2].repeat_setting = "turns";
+    passes[3] = pass_row("keep", simply("kept"), simply("field"));
+    t.module.images = images;
+    t.module.image_count = 2;
+    t.module.passes = passes;
+    t.module.pass_count = 4;
+    for (uint32_t turns = 0; turns < 4; turns++) {
+        uint32_t last = LAO_NO_INDEX, i;
+        planning_begin(&p, &t.module, 1);
+        assert_int_equal(lao_graph_check(&p.graph, NULL, 0, text, sizeof text), 0);
+        p.values[0][1] = (float)turns;
+        planning_make(&p);
+        check_plan(&p);
+        assert_int_equal(p.plan.step_count, 4 + 2 * turns);
+        for (i = 0; i < p.plan.step_count; i++) {
+            const lao_plan_step *step = &p.plan.steps[i];
+            if (turns == 2 && i < 7) {
+                assert_string_equal(step->row->name, order[i]);
+                assert_int_equal(step->level, levels[i]);
+            }
+            if (i > 0) { /* a chain */
+                assert_int_equal(step->reads[0], last);
+            }
+            last = step->colors[0].instance;
+        }
+        planning_end(&p);
+    }
+    passes[2].when[0].name = "turns"; /* its own condition drops it alone */
+    passes[2].when[0].compare = '>';
+    passes[2].when[0].value = 2;
+    planning_begin(&p, &t.module, 1);
+    planning_make(&p);
+    assert_int_equal(p.plan.step_count, 4);
+    planning_end(&p);
+}
+
 /* ----------------------------------------------------------------------------------------------------
  * random graphs */
 
@@ -1177,6 +1239,7 @@ int main(void) {
         cmocka_unit_test(every_structure_of_the_line_module_is_sound),
         cmocka_unit_test(repeats_levels_and_phases),
         cmocka_unit_test(keep_clears_each_level_and_partner_once),
+        cmocka_unit_test(rows_repeat_together),
         cmocka_unit_test(random_graphs_plan_soundly),
         cmocka_unit_test(conditions_and_constants),
         cmocka_unit_test(settings_belong_to_their_module),

@@ -28,6 +28,7 @@ static const char *const lines_fragment[] = {"flat in vec4 t_color;\n",
                                              "    t_depth = vec4(gl_FragCoord.z);\n",
                                              "}\n"};
 static const char *const over_fragment[] = {
+    "LAO_SETTINGS_BLOCK(2)\n",
     "uniform sampler2D t_depth;\n",
     "uniform sampler2D t_nothing;\n",
     "layout(location = 0) out vec4 t_out;\n",
@@ -69,11 +70,13 @@ static const lao_texture_type images[] = {LAO_TEXTURE_2D, LAO_TEXTURE_2D, LAO_TE
 #define NO_STAGE                                                                                   \
     { NULL, 0, NULL, 0 }
 static const lao_shader shaders[GL_FRAME_STEPS] = {
-    {"t_lines", NULL, 0, line_names, buffers, 2, 3, STAGE(lines_vertex), STAGE(lines_fragment)},
-    {"t_over", over_constants, 1, over_names, images, 2, 1, NO_STAGE, STAGE(over_fragment)},
-    {"t_history", NULL, 0, history_names, images, 3, 1, NO_STAGE, STAGE(history_fragment)},
-    {"t_depth", NULL, 0, depth_names, images, 1, 0, NO_STAGE, STAGE(depth_fragment)},
-    {"t_present", NULL, 0, present_names, images, 1, 1, NO_STAGE, STAGE(present_fragment)},
+    {"t_lines", NULL, 0, line_names, buffers, 2, 3, STAGE(lines_vertex), STAGE(lines_fragment),
+     NULL, 0},
+    {"t_over", over_constants, 1, over_names, images, 2, 1, NO_STAGE, STAGE(over_fragment), NULL,
+     0},
+    {"t_history", NULL, 0, history_names, images, 3, 1, NO_STAGE, STAGE(history_fragment), NULL, 0},
+    {"t_depth", NULL, 0, depth_names, images, 1, 0, NO_STAGE, STAGE(depth_fragment), NULL, 0},
+    {"t_present", NULL, 0, present_names, images, 1, 1, NO_STAGE, STAGE(present_fragment), NULL, 0},
 };
 const lao_shader *const gl_frame_shaders[GL_FRAME_STEPS] = {&shaders[0], &shaders[1], &shaders[2],
                                                             &shaders[3], &shaders[4]};
@@ -82,55 +85,70 @@ static const lao_pass_row rows[GL_FRAME_STEPS] = {
     {"lines",
      LAO_PASS_DRAW_LINES,
      "t_lines",
+     0,
+     LAO_STAGE_DRAW,
      LAO_SCOPE_PER_SET,
      LAO_REPEAT_NONE,
      NULL,
      LAO_BLEND_NONE,
      LAO_DEPTH_NEARER,
+     LAO_CULL_NONE,
      {{0}},
      {{0}},
      {{0}}},
     {"over",
      LAO_PASS_FULLSCREEN,
      "t_over",
+     0,
+     LAO_STAGE_DRAW,
      LAO_SCOPE_FRAME,
      LAO_REPEAT_NONE,
      NULL,
      LAO_BLEND_OVER,
      LAO_DEPTH_NONE,
+     LAO_CULL_NONE,
      {{0}},
      {{0}},
      {{0}}},
     {"history",
      LAO_PASS_FULLSCREEN,
      "t_history",
+     0,
+     LAO_STAGE_DRAW,
      LAO_SCOPE_FRAME,
      LAO_REPEAT_NONE,
      NULL,
      LAO_BLEND_NONE,
      LAO_DEPTH_NONE,
+     LAO_CULL_NONE,
      {{0}},
      {{0}},
      {{0}}},
     {"depth",
      LAO_PASS_FULLSCREEN,
      "t_depth",
+     0,
+     LAO_STAGE_DRAW,
      LAO_SCOPE_FRAME,
      LAO_REPEAT_NONE,
      NULL,
      LAO_BLEND_NONE,
      LAO_DEPTH_ALWAYS,
+     LAO_CULL_NONE,
      {{0}},
      {{0}},
      {{0}}},
     {"present",
      LAO_PASS_FULLSCREEN,
      "t_present",
+     0,
+     LAO_STAGE_DRAW,
      LAO_SCOPE_FRAME,
      LAO_REPEAT_NONE,
      NULL,
      LAO_BLEND_ADD,
      LAO_DEPTH_NONE,
+     LAO_CULL_NONE,
      {{0}},
      {{0}},
      {{0}}},
@@ -245,7 +263,7 @@ void gl_frame_init(gl_frame *frame, uint32_t size) {
     it->colors[2].instance = LINEAR_DEPTH;
     it->depth.instance = DEPTH;
     it->depth.value[0] = 1;
-    reads(it, 2, LAO_READ_POINTS, LAO_READ_COLORS, 0);
+    reads(it, 2, LAO_READ_BUFFER, LAO_READ_BUFFER + 1, 0);
     it = step(frame, 1, size, COLOR);
     it->colors[0].clear = 0;
     it->constants[0] = 3;
@@ -282,17 +300,17 @@ lao_result gl_frame_lines_create(gl_frame *frame, const lao_backend *backend, vo
     desc.format = LAO_FORMAT_RGBA32F;
     desc.texel_count = 5;
     desc.data = points;
-    frame->chunk.segment_count = 2;
-    result = backend->buffer_create(self, &desc, &frame->chunk.points);
+    frame->chunk.count = 2;
+    result = backend->buffer_create(self, &desc, &frame->chunk.buffers[0]);
     if (result)
         return result;
     desc.format = LAO_FORMAT_RGBA8;
     desc.data = colors;
-    return backend->buffer_create(self, &desc, &frame->chunk.colors);
+    return backend->buffer_create(self, &desc, &frame->chunk.buffers[1]);
 }
 
 void gl_frame_lines_destroy(gl_frame *frame, const lao_backend *backend, void *self) {
-    backend->buffer_destroy(self, frame->chunk.points);
-    backend->buffer_destroy(self, frame->chunk.colors);
-    frame->chunk.points = frame->chunk.colors = NULL;
+    backend->buffer_destroy(self, frame->chunk.buffers[0]);
+    backend->buffer_destroy(self, frame->chunk.buffers[1]);
+    frame->chunk.buffers[0] = frame->chunk.buffers[1] = NULL;
 }

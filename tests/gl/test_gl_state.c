@@ -34,7 +34,7 @@ static int skipped_row = -1;
     X(PFNGLDRAWBUFFERSPROC, DrawBuffers) X(PFNGLENABLEPROC, Enable) X(PFNGLENDQUERYPROC, EndQuery) \
     X(PFNGLENDTRANSFORMFEEDBACKPROC, EndTransformFeedback) \
     X(PFNGLFRAMEBUFFERRENDERBUFFERPROC, FramebufferRenderbuffer) \
-    X(PFNGLFRAMEBUFFERTEXTURE2DPROC, FramebufferTexture2D) X(PFNGLFRONTFACEPROC, FrontFace) \
+    X(PFNGLFRAMEBUFFERTEXTURE2DPROC, FramebufferTexture2D) X(PFNGLFRONTFACEPROC, FrontFace) X(PFNGLCULLFACEPROC, CullFace) \
     X(PFNGLGENBUFFERSPROC, GenBuffers) X(PFNGLGENFRAMEBUFFERSPROC, GenFramebuffers) \
     X(PFNGLGENQUERIESPROC, GenQueries) X(PFNGLGENRENDERBUFFERSPROC, GenRenderbuffers) \
     X(PFNGLGENSAMPLERSPROC, GenSamplers) X(PFNGLGENTEXTURESPROC, GenTextures) \
@@ -340,6 +340,7 @@ static void be_strange(void) {
     gl.ClipControl(GL_UPPER_LEFT, GL_NEGATIVE_ONE_TO_ONE);
     gl.DepthFunc(GL_NOTEQUAL);
     gl.DepthMask(GL_FALSE);
+    gl.CullFace(GL_FRONT_AND_BACK);
     gl.FrontFace(GL_CW);
     gl.LogicOp(GL_XOR);
     gl.PolygonMode(GL_FRONT_AND_BACK, GL_LINE);
@@ -605,7 +606,7 @@ static void render(lao_context *context, lao_lines lines, float color[PIXELS * 4
     static const float view[16] = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, -10, 1};
     static const float projection[16] = {2, 0, 0, 0, 0, 2, 0, 0, 0, 0, -1.5f, -1, 0, 0, -10, 0};
     lao_view_desc view_desc = {SIZE, SIZE, 0};
-    lao_set set = {{0}, NULL};
+    lao_set set = {0};
     lao_frame frame = {0};
     lao_read_info info;
     set.lines = lines;

@@ -510,6 +510,7 @@ static void draw_before(render_device *device, const render_shot *shot, const la
     lao_set set;
     lao_frame before = *frame;
     memset(&settings, 0, sizeof settings);
+    memset(&set, 0, sizeof set);
     settings.set = LAO_SET(occlusion);
     settings.width = shot->settings[0]->width;
     settings.supersampling = 1;
@@ -530,6 +531,7 @@ void render_draw(render_device *device, const render_shot *shot, render_result *
     surface target, depth;
     memset(result, 0, sizeof *result);
     memset(&frame, 0, sizeof frame);
+    memset(sets, 0, sizeof sets);
     memset(&desc, 0, sizeof desc);
     if (device->gl)
         assert_true(host_gl_make_current(device->gl));

@@ -44,6 +44,7 @@ static void *session(void *argument) {
     memset(&set, 0, sizeof set);
     memset(&frame, 0, sizeof frame);
     memset(&settings, 0, sizeof settings);
+    memset(sets, 0, sizeof sets);
     lao_null_backend(&null, &backend);
     desc.backend = &backend;
     w->result = lao_create(&desc, &context);

@@ -40,7 +40,7 @@ static void frames_in_ring_order(void **state) {
     lao_context *context;
     fixture_open(&f, *(uint32_t *)*state);
     assert_int_equal(fixture_context(&f, 1, &context), LAO_OK);
-    lao_set set = {fixture_lines_create(context, 0), fixture_settings()};
+    lao_set set = {fixture_lines_create(context, 0), fixture_settings(), {0}, NULL};
     lao_frame frame = fixture_frame(fixture_view_create(context, WIDTH, HEIGHT), &set, 1);
     assert_rendered(&f, context, &frame);
     fixture_wait(&f);
@@ -87,7 +87,7 @@ static void many_views_in_a_frame(void **state) {
     lao_view views[VIEWS];
     fixture_open(&f, *(uint32_t *)*state);
     assert_int_equal(fixture_context(&f, 0, &context), LAO_OK);
-    lao_set set = {fixture_lines_create(context, 0), fixture_settings()};
+    lao_set set = {fixture_lines_create(context, 0), fixture_settings(), {0}, NULL};
     lao_frame frame = fixture_frame((lao_view){0}, &set, 1);
     for (int i = 0; i < VIEWS; i++)
         views[i] = fixture_view_create(context, 16, 16);
@@ -116,7 +116,7 @@ static void resize_storm(void **state) {
     lao_context *context;
     fixture_open(&f, *(uint32_t *)*state);
     assert_int_equal(fixture_context(&f, 1, &context), LAO_OK);
-    lao_set set = {fixture_lines_create(context, 0), fixture_settings()};
+    lao_set set = {fixture_lines_create(context, 0), fixture_settings(), {0}, NULL};
     lao_frame frame = fixture_frame(fixture_view_create(context, 1, 1), &set, 1);
     for (uint32_t i = 0; i < 24; i++) {
         uint32_t size = 1 + i * 29 % 61;
@@ -142,7 +142,7 @@ static void every_variant(void **state) {
     fixture_open(&f, *(uint32_t *)*state);
     assert_int_equal(fixture_context(&f, 0, &context), LAO_OK);
     lao_settings settings;
-    lao_set set = {fixture_lines_create(context, 0), &settings};
+    lao_set set = {fixture_lines_create(context, 0), &settings, {0}, NULL};
     lao_frame frame = fixture_frame(fixture_view_create(context, 20, 12), &set, 1);
     for (size_t row = 0; row < sizeof rows / sizeof rows[0]; row++) {
         for (int i = 0; i < 3; i++) {
@@ -216,7 +216,7 @@ static void targets(void **state) {
     static unsigned char empty[WIDTH * HEIGHT * 8], pixels[WIDTH * HEIGHT * 8];
     fixture_open(&f, *(uint32_t *)*state);
     assert_int_equal(fixture_context(&f, 0, &context), LAO_OK);
-    lao_set set = {fixture_lines_create(context, 0), fixture_settings()};
+    lao_set set = {fixture_lines_create(context, 0), fixture_settings(), {0}, NULL};
     lao_frame frame = fixture_frame(fixture_view_create(context, WIDTH, HEIGHT), &set, 1);
     frame.background[3] = 1;
     for (int i = 0; i < 4; i++) {
@@ -289,7 +289,7 @@ static void host_depth(void **state) {
     static float depth[WIDTH * HEIGHT];
     fixture_open(&f, *(uint32_t *)*state);
     assert_int_equal(fixture_context(&f, 1, &context), LAO_OK);
-    lao_set set = {fixture_lines_create(context, 0), fixture_settings()};
+    lao_set set = {fixture_lines_create(context, 0), fixture_settings(), {0}, NULL};
     lao_frame frame = fixture_frame(fixture_view_create(context, WIDTH, HEIGHT), &set, 1);
     host_vk_image near = fixture_image_make(&f, VK_FORMAT_D32_SFLOAT, WIDTH, HEIGHT, 0, layout);
     host_vk_image far = fixture_image_make(&f, VK_FORMAT_D32_SFLOAT, WIDTH, HEIGHT, 1, layout);
@@ -388,7 +388,7 @@ static void destroyed_in_any_order(void **state) {
         lao_context *context;
         fixture_open(&f, *(uint32_t *)*state);
         assert_int_equal(fixture_context(&f, 0, &context), LAO_OK);
-        lao_set set = {fixture_lines_create(context, 0), fixture_settings()};
+        lao_set set = {fixture_lines_create(context, 0), fixture_settings(), {0}, NULL};
         lao_frame frame = fixture_frame(fixture_view_create(context, WIDTH, HEIGHT), &set, 1);
         if (order != 3) /* never drawn */
             assert_rendered(&f, context, &frame);
@@ -410,7 +410,7 @@ static void recorded_but_not_submitted(void **state) {
     lao_context *context;
     fixture_open(&f, *(uint32_t *)*state);
     assert_int_equal(fixture_context(&f, 1, &context), LAO_OK);
-    lao_set set = {fixture_lines_create(context, 0), fixture_settings()};
+    lao_set set = {fixture_lines_create(context, 0), fixture_settings(), {0}, NULL};
     lao_frame frame = fixture_frame(fixture_view_create(context, WIDTH, HEIGHT), &set, 1);
     for (uint32_t i = 0; i < 10; i++) {
         lao_lines_desc desc = fixture_lines(i);
@@ -439,7 +439,7 @@ static void timings_and_reading(void **state) {
     lao_read_info info;
     fixture_open(&f, *(uint32_t *)*state);
     assert_int_equal(fixture_context(&f, 0, &context), LAO_OK);
-    lao_set set = {fixture_lines_create(context, 0), fixture_settings()};
+    lao_set set = {fixture_lines_create(context, 0), fixture_settings(), {0}, NULL};
     lao_frame frame = fixture_frame(fixture_view_create(context, WIDTH, HEIGHT), &set, 1);
     frame.flags = LAO_FRAME_TIMINGS;
     for (int i = 0; i < 5; i++)
@@ -479,7 +479,7 @@ static void every_image_reads_back(void **state) {
     fixture_open(&f, *(uint32_t *)*state);
     assert_int_equal(fixture_context(&f, 1, &context), LAO_OK);
     assert_int_equal(lao_view_create(context, &desc, &view), LAO_OK);
-    lao_set set = {fixture_lines_create(context, 0), fixture_settings()};
+    lao_set set = {fixture_lines_create(context, 0), fixture_settings(), {0}, NULL};
     lao_frame frame = fixture_frame(view, &set, 1);
     static const char *const names[] = {"color", "tangent", "depth", "zbuffer",    "tensor",
                                         "ao",    "shaded",  "out",   "level_depth"};

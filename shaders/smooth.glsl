@@ -1,11 +1,12 @@
-/* One binomial blur of the occlusion along x over covered pixels: for debugging (METHODS 1.11). */
+/* One binomial blur of the occlusion along x (variant 0) or y (variant 1) over covered pixels: for debugging (METHODS 1.11). */
 LAO_TEX(0, sampler2D, ao)
 LAO_TEX(1, sampler2D, color)
+LAO_CONSTANT(0, lao_constant_variant)
 LAO_OUT(0, vec4, out_ao)
 #ifdef LAO_FRAGMENT
 void main() {
     ivec2 pixel = LAO_PIXEL;
-    ivec2 step_ = ivec2(1, 0);
+    ivec2 step_ = lao_constant_variant == 0 ? ivec2(1, 0) : ivec2(0, 1);
     ivec2 last = textureSize(ao, 0) - 1;
     LAO_EXACT float sum = 0.0;
     LAO_EXACT float weights = 0.0;
