@@ -17,6 +17,8 @@
       "smooth random curves filling a ball (1000 lines)")                                          \
     X(bundle, 5000, 0.4f, false, 0.6f, -0.7f, -0.4f, 0, 0, 1,                                      \
       "24 fanning bundles, every line exactly 100 points, for benchmarks (5000 lines)")            \
+    X(flow, 4000, 0.45f, true, 0.8f, -0.6f, -0.06f, 0, 0, 1,                                       \
+      "pathlines through a phantom of 4D flow: a jet, a vortex in a bulge, a helix (4000 lines)")  \
     X(stress, 24, 1.0f, false, 0, 0, -1, 0, 1, 0,                                                  \
       "degenerate lines: empty, one point, repeats, loops, hairpins, end-on (24 lines)")
 

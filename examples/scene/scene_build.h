@@ -45,6 +45,7 @@ void scene_build_crossing(scene_builder *builder, uint32_t count);
 void scene_build_helix(scene_builder *builder, uint32_t count);
 void scene_build_ball(scene_builder *builder, uint32_t count);
 void scene_build_bundle(scene_builder *builder, uint32_t count);
+void scene_build_flow(scene_builder *builder, uint32_t count);
 void scene_build_stress(scene_builder *builder, uint32_t count);
 
 #endif
