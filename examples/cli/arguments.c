@@ -15,6 +15,9 @@ typedef enum flag_type {
     FLAG_COUNT,   /* uint32_t, at least 1 */
     FLAG_NUMBER,  /* double */
     FLAG_LENGTH,  /* double, at least 0 */
+    FLAG_ABOVE,   /* double, above 0 */
+    FLAG_AUTO,    /* double above 0, or "auto": 0 */
+    FLAG_SPACING, /* double[3] above 0, or one for all */
     FLAG_SIZE,    /* uint32_t[2] */
     FLAG_RANGE,   /* colour_end[2] */
     FLAG_COLOR,   /* double[4] */
@@ -33,13 +36,32 @@ typedef struct flag_row {
 } flag_row;
 
 #define BOTH (CLI_RENDER | CLI_COMPARE)
-#define ANY (CLI_INFO | CLI_SHEET | BOTH)
+#define ANY (CLI_INFO | BOTH | CLI_FLOW)
+#define TRACE (BOTH | CLI_FLOW)
 #define ALL(field) false, offsetof(cli_options, field)
 #define FILE_(field) true, offsetof(cli_source, field)
 
 // clang-format off
 static const flag_row flags[] = {
     {"--out", "-o", "FILE.png", FLAG_TEXT, BOTH | CLI_SHEET, ALL(out), NULL, "the picture; with --frames a pattern (out_%04d.png, first = 0)"},
+    {"--out", "-o", "FILE", FLAG_TEXT, CLI_FLOW, ALL(out), NULL, "the lines: .vtp (with time and speed), .trk (the same) or .tck (positions alone)"},
+    {"--seeds", NULL, "N", FLAG_COUNT, TRACE, ALL(flow.seeds), NULL, "lines, each from a random place inside and a random time (30000)"},
+    {"--seed", NULL, "N", FLAG_COUNT, TRACE, ALL(flow.seed), NULL, "of the random numbers; the same gives the same lines"},
+    {"--mask", NULL, "FILE|NAME", FLAG_TEXT, ANY, ALL(flow.mask), NULL, "where the vessel is: a volume of the same size, or an array of the FILE (>= 0.5 is inside)"},
+    {"--threshold", NULL, "M/S", FLAG_LENGTH, TRACE, ALL(flow.threshold), NULL, "inside is where the speed reaches this at some time (without a mask: a tenth of the highest)"},
+    {"--streamlines", NULL, NULL, FLAG_SWITCH, TRACE, ALL(flow.streamlines), NULL, "lines of the frozen field at --time instead of pathlines"},
+    {"--step", NULL, "MS|auto", FLAG_AUTO, TRACE, ALL(flow.step), NULL, "time between the points of a line (period / 200; steady: half a voxel at the highest speed)"},
+    {"--max-points", NULL, "N", FLAG_COUNT, TRACE, ALL(flow.max_points), NULL, "of a line (200)"},
+    {"--span", NULL, "NAME", FLAG_CHOICE, TRACE, ALL(flow.span), "cycle|loop|free", "cycle: one beat, the same for all (default); loop: half a beat each way; free: up to --max-points"},
+    {"--method", NULL, "rk4|dopri", FLAG_CHOICE, TRACE, ALL(flow.method), "rk4|dopri", "Runge-Kutta of fixed step (default) or Dormand-Prince, which keeps --tolerance"},
+    {"--tolerance", NULL, "MM", FLAG_ABOVE, TRACE, ALL(flow.tolerance), NULL, "error of a part of a step, for dopri (0.0001)"},
+    {"--attributes", NULL, "NAME", FLAG_CHOICE, TRACE, ALL(flow.attributes), "vorticity|curvature|all", "more per point: vorticity (1/s), curvature (1/mm) or all"},
+    {"--names", NULL, "U,V,W[,MASK]", FLAG_TEXT, ANY, ALL(flow.names), NULL, "arrays of a volume: three components, or one vector: VELOCITY[,MASK]"},
+    {"--unit", NULL, "NAME", FLAG_CHOICE, ANY, ALL(flow.unit), "m/s|cm/s|mm/s", "of a volume's velocities: m/s (default), cm/s or mm/s"},
+    {"--axes", NULL, "mm|grid", FLAG_CHOICE, ANY, ALL(flow.axes), "mm|grid", "of a volume's velocities: those of its mm (default) or of its voxels"},
+    {"--spacing", NULL, "MM[,MM,MM]", FLAG_SPACING, ANY, ALL(flow.spacing), NULL, "size of a volume's voxels, where it tells none or a wrong one"},
+    {"--time-step", NULL, "MS", FLAG_ABOVE, ANY, ALL(flow.time_step), NULL, "between a volume's frames"},
+    {"--period", NULL, "MS", FLAG_ABOVE, ANY, ALL(flow.period), NULL, "of all its frames, instead of --time-step"},
     {"--scene", NULL, "NAME", FLAG_SCENE, BOTH, ALL(scene), NULL, "embedded scene, when no FILE is given (aorta)"},
     {"--lines", NULL, "N", FLAG_COUNT, BOTH, ALL(lines), NULL, "lines of the embedded scene"},
     {"--size", NULL, "WxH", FLAG_SIZE, BOTH, ALL(size), NULL, "pixels (render: 1280x960, compare: 640x480)"},
@@ -50,7 +72,7 @@ static const flag_row flags[] = {
     {"--save-camera", NULL, "FILE.json", FLAG_TEXT, CLI_RENDER, ALL(save_camera), NULL, "write the camera that was used"},
     {"--view", NULL, "NAME", FLAG_CHOICE, BOTH, ALL(view), "axial|coronal|sagittal|iso", "direction of the automatic camera: axial, coronal, sagittal or iso"},
     {"--ortho", NULL, NULL, FLAG_SWITCH, BOTH, ALL(ortho), NULL, "make the automatic camera orthographic"},
-    {"--time", NULL, "MS", FLAG_NUMBER, BOTH, ALL(time), NULL, "the time to show (0)"},
+    {"--time", NULL, "MS", FLAG_NUMBER, TRACE, ALL(time), NULL, "the time to show (0)"},
     {"--frames", NULL, "N", FLAG_COUNT, CLI_RENDER, ALL(frames), NULL, "a sequence of pictures, its time running over that of the data"},
     {"--legend", NULL, "SIDE", FLAG_CHOICE, CLI_RENDER, ALL(legend), "off|left|right|bottom", "scale of the attribute's colours in the picture: off, left, right or bottom (off)"},
     {"--legend-title", NULL, "TEXT", FLAG_TEXT, CLI_RENDER, ALL(legend_title), NULL, "above the scale (the attribute's name, and its unit if known)"},
@@ -60,8 +82,8 @@ static const flag_row flags[] = {
     {"--title", NULL, "TEXT", FLAG_TEXT, CLI_SHEET, ALL(title), NULL, "above all pictures"},
     {"--note", NULL, "TEXT", FLAG_TEXT, CLI_SHEET, ALL(note), NULL, "below all pictures"},
     {"--widest", NULL, "N", FLAG_COUNT, CLI_SHEET, ALL(widest), NULL, "pixels; wider pictures shrink by a whole factor (no limit)"},
-    {"--json", NULL, NULL, FLAG_SWITCH, CLI_INFO | CLI_COMPARE, ALL(json), NULL, "one JSON object on standard output"},
-    {"--help", "-h", NULL, FLAG_SWITCH, ANY, ALL(help), NULL, "this text"},
+    {"--json", NULL, NULL, FLAG_SWITCH, CLI_INFO | CLI_COMPARE | CLI_FLOW, ALL(json), NULL, "one JSON object on standard output"},
+    {"--help", "-h", NULL, FLAG_SWITCH, ANY | CLI_SHEET, ALL(help), NULL, "this text"},
     {"--color", NULL, "#rrggbb", FLAG_PAINT, BOTH, FILE_(color), NULL, "or r,g,b in 0..1, direction, line or the NAME of an attribute"},
     {"--colormap", NULL, "NAME", FLAG_CHOICE, BOTH, FILE_(colormap), COLOUR_MAPS, "of attributes: " COLOUR_MAPS " (viridis)"},
     {"--range", NULL, "A,B", FLAG_RANGE, BOTH, FILE_(range), NULL, "values at both ends of the colour map, or percentiles of all (2%,98%)"},
@@ -101,6 +123,19 @@ static bool parse_count(const char *text, uint32_t *count) {
         number > 1e8)
         return false;
     *count = (uint32_t)number;
+    return true;
+}
+
+/* One number above 0 for all, or three. */
+static bool parse_spacing(const char *text, double spacing[3]) {
+    double v[3];
+    if (cli_number(text, &v[0]))
+        v[1] = v[2] = v[0];
+    else if (!cli_numbers(text, v, 3))
+        return false;
+    if (!(v[0] > 0 && v[1] > 0 && v[2] > 0))
+        return false;
+    memcpy(spacing, v, sizeof v);
     return true;
 }
 
@@ -260,7 +295,14 @@ static bool set_scene(const char *value, const char **scene) {
 
 /* ---- flags ------------------------------------------------------------------------------ */
 
+static bool is_flow_flag(const flag_row *row) {
+    size_t begin = offsetof(cli_options, flow);
+    return !row->per_file && row->offset >= begin && row->offset < begin + sizeof(cli_flow_options);
+}
+
 static bool set_flag(parser *p, const flag_row *row, const char *value) {
+    if (is_flow_flag(row))
+        p->options->flow_flag = row->name;
     void *field =
         row->per_file ? (char *)p->source + row->offset : (char *)p->options + row->offset;
     bool ok = true;
@@ -286,6 +328,16 @@ static bool set_flag(parser *p, const flag_row *row, const char *value) {
         break;
     case FLAG_LENGTH:
         ok = cli_number(value, field) && *(double *)field >= 0;
+        break;
+    case FLAG_ABOVE:
+        ok = cli_number(value, field) && *(double *)field > 0;
+        break;
+    case FLAG_AUTO:
+        *(double *)field = 0;
+        ok = strcmp(value, "auto") == 0 || (cli_number(value, field) && *(double *)field > 0);
+        break;
+    case FLAG_SPACING:
+        ok = parse_spacing(value, field);
         break;
     case FLAG_SIZE:
         ok = parse_size(value, field);
@@ -360,6 +412,12 @@ static int take_flag(parser *p, int argc, char **argv, int at) {
     return equals ? 1 : 2;
 }
 
+/* What io_write_lines writes. */
+static bool is_line_name(const char *path) {
+    const char *dot = strrchr(path, '.');
+    return dot && is_choice("vtp|trk|tck", dot + 1);
+}
+
 static bool check(const parser *p) {
     const cli_options *o = p->options;
     if (o->help)
@@ -369,6 +427,14 @@ static bool check(const parser *p) {
     if (p->command == CLI_SHEET && (o->file_count == 0 || !o->out))
         return cli_fail("sheet: %s; write lineao sheet CAPTION=FILE.png... -o out.png",
                         o->out ? "no picture is given" : "no output is asked for");
+    if (p->command == CLI_FLOW && (o->file_count == 0 || !o->out))
+        return cli_fail("flow: %s; write lineao flow VOLUME... -o lines.vtp",
+                        o->file_count ? "no output is asked for" : "no VOLUME is given");
+    if (p->command == CLI_FLOW && !is_line_name(o->out))
+        return cli_fail("--out: '%s' is not a value of it; its name must end in .vtp, .trk or .tck",
+                        o->out);
+    if (o->flow_flag && o->file_count == 0)
+        return cli_fail("%s: is for velocity volumes, and no FILE is given", o->flow_flag);
     if (p->command == CLI_RENDER && !o->out && !o->dump && !o->timings && !o->save_camera)
         return cli_fail("render: no output is asked for; write -o out.png");
     if (o->file_count > 0 && (o->scene || o->lines))
@@ -395,6 +461,7 @@ bool cli_parse(cli_command_bit command, int argc, char **argv, cli_options *out)
     out->all.colormap = "viridis";
     out->all.range[0] = (colour_end){2, true};
     out->all.range[1] = (colour_end){98, true};
+    out->flow.threshold = -1;
     cli_parse_color("#f4f4f2", out->background);
     out->files = cli_new((size_t)argc + 1, sizeof *out->files);
     if (!out->files)
@@ -427,11 +494,11 @@ void cli_options_free(cli_options *options) {
 
 /* ---- help ------------------------------------------------------------------------------- */
 
-static void print_rows(cli_command_bit command, bool per_file, const char *title) {
+static void print_rows(cli_command_bit command, bool per_file, bool flow, const char *title) {
     bool any = false;
     for (size_t i = 0; i < FLAG_ROWS; i++) {
         const flag_row *row = &flags[i];
-        if (!(row->commands & command) || row->per_file != per_file)
+        if (!(row->commands & command) || row->per_file != per_file || is_flow_flag(row) != flow)
             continue;
         if (!any)
             printf("\n%s\n", title);
@@ -459,8 +526,9 @@ static void print_settings(void) {
 }
 
 void cli_print_flags(cli_command_bit command) {
-    print_rows(command, false, "Flags");
-    print_rows(command, true,
+    print_rows(command, false, false, "Flags");
+    print_rows(command, false, true, "Velocity volumes");
+    print_rows(command, true, false,
                "Lines: before the first FILE for all FILEs, after a FILE for it alone");
     if (command & BOTH)
         print_settings();

@@ -14,7 +14,8 @@ typedef enum cli_command_bit {
     CLI_INFO = 1,
     CLI_RENDER = 2,
     CLI_COMPARE = 4,
-    CLI_SHEET = 8
+    CLI_FLOW = 8,
+    CLI_SHEET = 16
 } cli_command_bit;
 
 /* One FILE and the flags that hold for it. */
@@ -29,6 +30,17 @@ typedef struct cli_source {
     const char *bundle;
 } cli_source;
 
+/* How velocity volumes are read and traced. Numbers are 0, texts NULL where nothing is given. */
+typedef struct cli_flow_options {
+    const char *names, *mask, *unit, *axes; /* see io_volume_options */
+    double spacing[3], time_step, period;
+    uint32_t seeds, seed, max_points;
+    double step, tolerance; /* ms, mm */
+    double threshold;       /* m/s; negative: none is given */
+    const char *method, *span, *attributes;
+    bool streamlines;
+} cli_flow_options;
+
 typedef struct cli_options {
     cli_source all;    /* flags before the first FILE */
     cli_source *files; /* owned */
@@ -40,6 +52,8 @@ typedef struct cli_options {
     uint32_t size[2];
     double time, background[4];
     bool ortho, json, help;
+    cli_flow_options flow;
+    const char *flow_flag; /* the last flag in `flow` that was given, or NULL */
 } cli_options;
 
 /* Parses what stands behind the command's name. False: wrong usage, reported. Free in any case. */

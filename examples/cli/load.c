@@ -1,6 +1,7 @@
 #include "load.h"
 
 #include "camera.h"
+#include "flow.h"
 #include "report.h"
 #include "scene.h"
 
@@ -117,14 +118,30 @@ static void find_times(cli_set *set, cli_scene *out) {
     }
 }
 
-static bool load_set(const cli_options *options, const cli_source *source, cli_scene *out) {
+static bool load_traced(const cli_options *options, const cli_source *first, uint32_t count,
+                        io_lines *lines) {
+    io_volume volume;
+    if (!cli_read_volume(options, first, count, false, &volume))
+        return false;
+    bool ok = cli_trace(options, first->path, &volume, lines);
+    io_volume_free(&volume);
+    return ok && cli_go_on();
+}
+
+/* volumes: how many sources from `first` on are one volume; its look is that of the last. */
+static bool load_set(const cli_options *options, const cli_source *first, uint32_t volumes,
+                     cli_scene *out) {
+    const cli_source *source = volumes ? first + volumes - 1 : first;
     cli_set *set = &out->sets[out->count];
     memset(set, 0, sizeof *set);
     set->source = source;
-    set->name = source->path;
+    set->name = first->path;
     set->settings = source->settings;
     out->count++; /* freed with the scene from here on */
-    if (!(source->path ? cli_read_file(source, &set->lines) : load_embedded(options, set, out)))
+    bool ok = volumes        ? load_traced(options, first, volumes, &set->lines)
+              : source->path ? cli_read_file(source, &set->lines)
+                             : load_embedded(options, set, out);
+    if (!ok)
         return false;
     if (out->count == 1)
         memcpy(out->origin, set->lines.origin, sizeof out->origin);
@@ -143,9 +160,16 @@ bool cli_scene_load(const cli_options *options, cli_scene *out) {
     scene.sets = cli_new(count, sizeof *scene.sets);
     if (!scene.sets)
         return false;
+    const cli_source *sources = options->file_count ? options->files : &options->all;
+    uint32_t any = 0;
     bool ok = true;
-    for (uint32_t i = 0; ok && i < count; i++)
-        ok = load_set(options, options->file_count ? &options->files[i] : &options->all, &scene);
+    for (uint32_t i = 0, volumes; ok && i < count; i += volumes ? volumes : 1) {
+        volumes = cli_count_volumes(sources, count, i);
+        any += volumes;
+        ok = load_set(options, &sources[i], volumes, &scene);
+    }
+    if (ok && !any && options->flow_flag)
+        ok = cli_fail("%s: is for velocity volumes, and no FILE is one", options->flow_flag);
     if (!ok || !cli_colour(&scene)) {
         cli_scene_free(&scene);
         return false;

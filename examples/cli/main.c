@@ -18,12 +18,34 @@ typedef struct command_row {
     cli_command_bit bit; /* 0: takes its arguments itself */
     int (*run)(const cli_options *options);
     const char *arguments, *help, *examples;
+    const char *about; /* what --help adds; NULL = nothing */
 } command_row;
 
+static const char flow_about[] =
+    "A VOLUME is a grid of velocities: NIfTI (.nii, .nii.gz; three components on its fifth axis, "
+    "or\n"
+    "in three files), VTK ImageData (.vti) or structured points (.vtk), HDF5 as 4DFlowNet has it\n"
+    "(.h5: u, v, w [t,x,y,z], mask, dx). Several files with velocities are time steps in their "
+    "order.\n"
+    "Distances are mm, times ms, velocities m/s. What a file does not tell is asked for by the "
+    "name\n"
+    "of the flag that gives it; lineao info VOLUME shows what it tells.\n\n"
+    "Lines follow the blood for one beat, each from a random place and time, forward and "
+    "backward,\n"
+    "until they leave the mask. Without a mask, inside is where the blood is fast: see "
+    "--threshold.\n"
+    "A volume with one frame is steady: its lines are streamlines, their time counts from the "
+    "seed.\n"
+    "Each point has the attributes time (ms) and speed (m/s). The same --seed gives the same lines "
+    "on\n"
+    "any number of threads (LINEAO_THREADS; as many as the machine has).\n";
+
 static const command_row commands[] = {
-    {"info", CLI_INFO, cli_info, "FILE... [--json]", "what is in line files",
+    {"info", CLI_INFO, cli_info, "FILE... [--json]", "what is in line files and velocity volumes",
      "  lineao info bundle.trk                 lines, points, box, attributes, groups\n"
-     "  lineao info *.trx --json               the same for scripts\n"},
+     "  lineao info *.trx --json               the same for scripts\n"
+     "  lineao info flow.h5                    a volume: voxels, frames, period, speeds, mask\n",
+     NULL},
     {"render", CLI_RENDER, cli_render, "[FILE [FLAG...]]... -o out.png",
      "draw lines into a picture",
      "  lineao render -o aorta.png                                     the embedded scene\n"
@@ -31,22 +53,41 @@ static const command_row commands[] = {
      "  lineao render a.trk --color '#d08040' b.tck --width 1 -o two.png   each FILE its own look\n"
      "  lineao render bundle.trk --color fa --colormap inferno -o fa.png\n"
      "  lineao render --preset classic --strength 2 -o classic.png     settings are flags\n"
-     "  lineao render --ssaa 1 --dump frame.exr --backend vk           every image as numbers\n"},
+     "  lineao render --ssaa 1 --dump frame.exr --backend vk           every image as numbers\n"
+     "  lineao render flow.h5 --color speed --seeds 5000 -o flow.png   traces the volume first\n",
+     NULL},
     {"compare", CLI_COMPARE, cli_compare, "[FILE [FLAG...]]... [-o sheet.png] [--json]",
      "draw with OpenGL and Vulkan and count differing bits",
      "  lineao compare -o sheet.png            GL, VK and difference of every image\n"
-     "  lineao compare bundle.trk --json       exit code 1 when a bit differs\n"},
+     "  lineao compare bundle.trk --json       exit code 1 when a bit differs\n",
+     NULL},
+    {"flow", CLI_FLOW, cli_flow, "VOLUME... -o lines.vtp [--json]",
+     "trace pathlines through a velocity volume",
+     "  lineao flow aorta.h5 -o aorta.vtp                      30000 lines inside its mask\n"
+     "  lineao flow 4d.nii.gz --mask vessel.nii.gz -o 4d.trk   the mask from a file of its own\n"
+     "  lineao flow u.nii v.nii w.nii --unit cm/s -o uvw.tck   one file for each component\n"
+     "  lineao flow t_*.vti --period 800 -o beat.vtp           one file for each time step\n"
+     "  lineao flow 4d.h5 --names vx,vy,vz,seg --spacing 2,2,3 --time-step 40 -o named.vtp\n"
+     "  lineao flow 4d.h5 --streamlines --time 120 -o peak.vtp\n"
+     "  lineao render aorta.vtp --color speed -o aorta.png     look at them\n",
+     flow_about},
     {"sheet", CLI_SHEET, cli_sheet_command, "[CAPTION=]FILE.png... -o out.png",
      "put pictures with captions on one sheet",
-     "  lineao sheet 'no AO=a.png' 'AO=b.png' --columns 2 -o ab.png\n"},
-    {"bench", 0, NULL, "[--json]", "time every pass and frame of fixed scenes on both backends",
-     ""},
+     "  lineao sheet 'no AO=a.png' 'AO=b.png' --columns 2 -o ab.png\n", NULL},
+    {"bench", 0, NULL, "[--json]", "time every pass and frame of fixed scenes on both backends", "",
+     NULL},
 };
 enum { COMMANDS = sizeof commands / sizeof *commands };
 
 static const char *command_name(const void *user, uint32_t index) {
     (void)user;
     return index < COMMANDS ? commands[index].name : NULL;
+}
+
+static void list_commands(char *text, size_t size) {
+    size_t used = 0;
+    for (int i = 0; i < COMMANDS && used < size; i++)
+        used += (size_t)snprintf(text + used, size - used, "%s%s", i ? ", " : "", commands[i].name);
 }
 
 static void print_help(void) {
@@ -58,13 +99,17 @@ static void print_help(void) {
     printf("\nExamples\n");
     for (int i = 0; i < COMMANDS; i++)
         printf("%s", commands[i].examples);
-    printf("\nFiles: .trk .tck .trx .tt .vtk .vtp, also gzip-compressed.\n"
+    printf("\nFiles: lines .trk .tck .trx .tt .vtk .vtp, volumes .nii .vti .vtk .h5; but for .h5 "
+           "also\n"
+           "gzip-compressed.\n"
            "Flags of a command: lineao COMMAND --help\n");
 }
 
 static void print_command(const command_row *row) {
     printf("usage: lineao %s %s\n\n%c%s.\n\nExamples\n%s", row->name, row->arguments,
            row->help[0] - 'a' + 'A', row->help + 1, row->examples);
+    if (row->about)
+        printf("\n%s", row->about);
     cli_print_flags(row->bit);
 }
 
@@ -74,9 +119,10 @@ static const command_row *find_command(const char *name) {
             return &commands[i];
     }
     const char *nearest = cli_nearest(name, command_name, NULL);
-    cli_fail(
-        "%s: there is no such command%s%s; commands are info, render, compare, sheet, bench, help",
-        name, nearest ? "; did you mean " : "", nearest ? nearest : "");
+    char names[128];
+    list_commands(names, sizeof names);
+    cli_fail("%s: there is no such command%s%s; commands are %s, help", name,
+             nearest ? "; did you mean " : "", nearest ? nearest : "", names);
     return NULL;
 }
 
@@ -119,8 +165,9 @@ static bool is_one_of(const char *text, const char *a, const char *b) {
 int main(int argc, char **argv) {
     cli_interrupt_hold();
     if (argc < 2) {
-        cli_fail("no command is given; commands are info, render, compare, sheet, bench; see "
-                 "lineao --help");
+        char names[128];
+        list_commands(names, sizeof names);
+        cli_fail("no command is given; commands are %s; see lineao --help", names);
         return CLI_USAGE;
     }
     if (is_one_of(argv[1], "--version", "version"))

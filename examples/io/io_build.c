@@ -294,9 +294,7 @@ static bool filter(io_reader *r, uint32_t *place, size_t *lines, size_t *points)
 
 /* ---- Handing over ---------------------------------------------------------------------------- */
 
-/* Memory of the result outlives the reader; a zero count gives a small block, so that NULL always
- * means failure. */
-static void *take_memory(io_reader *r, size_t count, size_t size) {
+void *io_take_memory(io_reader *r, size_t count, size_t size) {
     void *memory = calloc(count ? count : 1, size);
     if (!memory)
         io_error_set(r->error, "needs %zu MB of memory, which the system does not give",
@@ -304,9 +302,9 @@ static void *take_memory(io_reader *r, size_t count, size_t size) {
     return memory;
 }
 
-static char *take_text(io_reader *r, const char *text) {
+char *io_take_text(io_reader *r, const char *text) {
     size_t size = strlen(text) + 1;
-    char *copy = take_memory(r, size, 1);
+    char *copy = io_take_memory(r, size, 1);
     return copy ? memcpy(copy, text, size) : NULL;
 }
 
@@ -340,8 +338,8 @@ static void find_bounds(const io_reader *r, const uint32_t *place, io_lines *lin
 
 static bool copy_geometry(io_reader *r, const uint32_t *place, size_t line_count,
                           size_t point_count, io_lines *lines) {
-    lines->offsets = take_memory(r, line_count + 1, sizeof *lines->offsets);
-    lines->points = take_memory(r, point_count, 3 * sizeof *lines->points);
+    lines->offsets = io_take_memory(r, line_count + 1, sizeof *lines->offsets);
+    lines->points = io_take_memory(r, point_count, 3 * sizeof *lines->points);
     if (!lines->offsets || !lines->points)
         return false;
     for (size_t i = 0; i < r->line_count; i++) {
@@ -360,15 +358,15 @@ static bool copy_columns(io_reader *r, const io_columns *columns, const uint32_t
                          bool of_points, const io_lines *lines, uint32_t *count,
                          io_attribute **out) {
     size_t rows = of_points ? r->point_count : r->line_count;
-    if (columns->count && !(*out = take_memory(r, columns->count, sizeof **out)))
+    if (columns->count && !(*out = io_take_memory(r, columns->count, sizeof **out)))
         return false;
     for (size_t i = 0; i < columns->count; i++) {
         io_column *column = &columns->items[i];
         io_attribute *attribute = &(*out)[(*count)++];
         size_t width = attribute->components = column->components;
         size_t kept = of_points ? lines->point_count : lines->line_count;
-        attribute->name = take_text(r, column->name);
-        attribute->data = take_memory(r, kept, width * sizeof *attribute->data);
+        attribute->name = io_take_text(r, column->name);
+        attribute->data = io_take_memory(r, kept, width * sizeof *attribute->data);
         if (!attribute->name || !attribute->data || !pad_column(r, column, rows))
             return false;
         float *to = attribute->data;
@@ -386,13 +384,13 @@ static bool copy_columns(io_reader *r, const io_columns *columns, const uint32_t
 
 static bool copy_groups(io_reader *r, const uint32_t *place, io_lines *lines) {
     if (r->bundle_count &&
-        !(lines->groups = take_memory(r, r->bundle_count, sizeof *lines->groups)))
+        !(lines->groups = io_take_memory(r, r->bundle_count, sizeof *lines->groups)))
         return false;
     for (size_t i = 0; i < r->bundle_count; i++) {
         const io_bundle *bundle = &r->bundles[i];
         io_group *group = &lines->groups[lines->group_count];
-        group->lines = take_memory(r, bundle->count, sizeof *group->lines);
-        group->name = group->lines ? take_text(r, bundle->name) : NULL;
+        group->lines = io_take_memory(r, bundle->count, sizeof *group->lines);
+        group->name = group->lines ? io_take_text(r, bundle->name) : NULL;
         lines->group_count++; /* now io_lines_free knows it */
         if (!group->name)
             return false;
@@ -427,12 +425,11 @@ static bool warn_of_content(io_reader *r, const io_lines *lines) {
     return true;
 }
 
-static bool copy_warnings(io_reader *r, io_lines *lines) {
-    if (r->warning_count &&
-        !(lines->warnings = take_memory(r, r->warning_count, sizeof *lines->warnings)))
+bool io_take_warnings(io_reader *r, char ***warnings, uint32_t *count) {
+    if (r->warning_count && !(*warnings = io_take_memory(r, r->warning_count, sizeof **warnings)))
         return false;
     for (size_t i = 0; i < r->warning_count; i++)
-        if (!(lines->warnings[lines->warning_count++] = take_text(r, r->warnings[i])))
+        if (!((*warnings)[(*count)++] = io_take_text(r, r->warnings[i])))
             return false;
     return true;
 }
@@ -454,8 +451,8 @@ bool io_finish(io_reader *r, const char *format, io_lines *out) {
                      &lines.point_attributes) &&
         copy_columns(r, &r->line_columns, place, false, &lines, &lines.line_attribute_count,
                      &lines.line_attributes) &&
-        copy_groups(r, place, &lines) && warn_of_content(r, &lines) && copy_warnings(r, &lines) &&
-        io_tick(r, 1, 1)) {
+        copy_groups(r, place, &lines) && warn_of_content(r, &lines) &&
+        io_take_warnings(r, &lines.warnings, &lines.warning_count) && io_tick(r, 1, 1)) {
         *out = lines;
         return true;
     }

@@ -137,6 +137,10 @@ typedef struct io_reader {
     size_t dropped_points, empty_lines;
 } io_reader;
 
+/* options may be NULL. The memory of the read is limited as if its file were huge. */
+void io_begin(io_reader *reader, const io_options *options, io_error *error);
+/* Limits the memory of the read by the size of its files. */
+void io_set_limit(io_reader *reader, size_t size);
 void io_reader_free(io_reader *reader);
 
 /* Both write the error text and are false, so that a reader may `return io_fail(...)`. */
@@ -180,6 +184,12 @@ void io_next_batch(io_reader *reader);
 /* Puts a line (by its row) into a group; the group is made at first use. */
 io_bundle *io_add_bundle(io_reader *reader, io_text name);
 bool io_bundle_add(io_reader *reader, io_bundle *bundle, uint32_t row);
+/* Memory of a result, which outlives the reader: zeroed, for free(), not NULL for a zero count.
+ * NULL: error written. */
+void *io_take_memory(io_reader *reader, size_t count, size_t size);
+char *io_take_text(io_reader *reader, const char *text);
+/* The warnings for a result; *count counts what is to be freed, also on failure. */
+bool io_take_warnings(io_reader *reader, char ***warnings, uint32_t *count);
 /* Filters, centres and hands everything over. */
 bool io_finish(io_reader *reader, const char *format, io_lines *out);
 

@@ -61,18 +61,10 @@ static const format *find_format(const io_cursor *bytes, const char *name) {
 
 /* ---- Reading --------------------------------------------------------------------------------- */
 
-/* Real files need at most a few times their size; compressed ones more. 32-bit systems have less to
- * give. */
-static void set_limit(io_reader *r, size_t size) {
-    const uint64_t most = sizeof(size_t) > 4 ? UINT64_C(32) << 30 : UINT64_C(1) << 30;
-    uint64_t limit = size > most / 4096 ? most : (UINT64_C(64) << 20) + (uint64_t)size * 4096;
-    r->limit = (size_t)(limit < most ? limit : most);
-}
-
 static bool read_bytes(io_reader *r, io_cursor bytes, const char *name, io_lines *out) {
     if (!bytes.size)
         return io_fail(r, "is empty (0 bytes)");
-    set_limit(r, bytes.size);
+    io_set_limit(r, bytes.size);
     if (io_is_gzip(&bytes) && !io_gunzip(r, &bytes))
         return false;
     const format *found = find_format(&bytes, name);
@@ -82,18 +74,10 @@ static bool read_bytes(io_reader *r, io_cursor bytes, const char *name, io_lines
     return io_tick(r, 0, 1) && found->read(r, &bytes) && io_finish(r, found->name, out);
 }
 
-static void begin(io_reader *r, const io_options *options, io_error *error) {
-    static const io_options none = {0, 0, NULL, false, NULL, NULL};
-    memset(r, 0, sizeof *r);
-    r->options = options ? options : &none;
-    r->error = error;
-    set_limit(r, SIZE_MAX);
-}
-
 bool io_read_lines_memory(const void *bytes, size_t size, const char *name_hint,
                           const io_options *options, io_lines *out, io_error *error) {
     io_reader r;
-    begin(&r, options, error);
+    io_begin(&r, options, error);
     io_cursor cursor = {bytes, size, 0};
     bool done = read_bytes(&r, cursor, name_hint, out);
     io_reader_free(&r);
@@ -102,7 +86,7 @@ bool io_read_lines_memory(const void *bytes, size_t size, const char *name_hint,
 
 bool io_read_lines(const char *path, const io_options *options, io_lines *out, io_error *error) {
     io_reader r;
-    begin(&r, options, error);
+    io_begin(&r, options, error);
     struct stat info;
     io_cursor bytes;
     bool done;

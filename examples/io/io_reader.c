@@ -166,6 +166,24 @@ char *io_copy_text(io_reader *reader, io_text text) {
     return copy;
 }
 
+/* ---- Begin ----------------------------------------------------------------------------------- */
+
+/* Real files need at most a few times their size; compressed ones more. 32-bit systems have less to
+ * give. */
+void io_set_limit(io_reader *r, size_t size) {
+    const uint64_t most = sizeof(size_t) > 4 ? UINT64_C(32) << 30 : UINT64_C(1) << 30;
+    uint64_t limit = size > most / 4096 ? most : (UINT64_C(64) << 20) + (uint64_t)size * 4096;
+    r->limit = (size_t)(limit < most ? limit : most);
+}
+
+void io_begin(io_reader *r, const io_options *options, io_error *error) {
+    static const io_options none = {0, 0, NULL, false, NULL, NULL};
+    memset(r, 0, sizeof *r);
+    r->options = options ? options : &none;
+    r->error = error;
+    io_set_limit(r, SIZE_MAX);
+}
+
 /* ---- Files ----------------------------------------------------------------------------------- */
 
 /* In pieces, so that pipes work and a wrong size cannot make us take memory. */
