@@ -51,7 +51,7 @@ typedef struct cli_options {
     uint32_t lines, frames, columns, widest; /* 0: not given */
     uint32_t size[2];
     double time, background[4];
-    bool ortho, json, help;
+    bool ortho, json, backdrop, help;
     cli_flow_options flow;
     const char *flow_flag; /* the last flag in `flow` that was given, or NULL */
 } cli_options;

@@ -1,5 +1,6 @@
 /* lineao render: pictures, dumps, timings. */
 #include "commands.h"
+#include "context.h"
 #include "dump.h"
 #include "image.h"
 #include "legend.h"
@@ -90,30 +91,38 @@ static bool draw_legends(const cli_options *options, const cli_scene *scene, pic
     return ok;
 }
 
-static bool write_picture(const char *path, const cli_options *options, const cli_scene *scene,
-                          cli_session *session, const cli_shot *shot) {
+/* What is drawn around the lines of a frame. */
+typedef struct surroundings {
+    const cli_options *options;
+    const cli_scene *scene;
+    cli_context context;
+    float paper[4]; /* the background that was asked for */
+} surroundings;
+
+static bool surround(const surroundings *around, picture *p) {
+    return (!around->context.coverage || cli_context_compose(&around->context, around->paper, p)) &&
+           (strcmp(around->options->legend, "off") == 0 ||
+            draw_legends(around->options, around->scene, p));
+}
+
+static bool write_picture(const char *path, const surroundings *around, cli_session *session,
+                          const cli_shot *shot) {
     char error[IMAGE_ERROR_SIZE];
-    uint8_t *pixels = cli_session_picture(session);
-    picture whole = {shot->width, shot->height, pixels};
-    if (!pixels)
-        return false;
-    if (strcmp(options->legend, "off") != 0 && !draw_legends(options, scene, &whole)) {
-        free(pixels);
-        return false;
-    }
-    int channels = shot->background[3] < 1 ? 4 : 3;
-    for (size_t i = 0; channels == 3 && i < (size_t)shot->width * shot->height; i++)
-        memmove(pixels + 3 * i, pixels + 4 * i, 3);
-    bool ok = image_write_png(path, shot->width, shot->height, pixels, channels, error) ||
-              cli_fail("%s", error);
-    free(pixels);
+    picture p = {shot->width, shot->height, cli_session_picture(session)};
+    bool ok = p.pixels && surround(around, &p);
+    int channels = around->paper[3] < 1 ? 4 : 3;
+    for (size_t i = 0; ok && channels == 3 && i < (size_t)p.width * p.height; i++)
+        memmove(p.pixels + 3 * i, p.pixels + 4 * i, 3);
+    ok = ok && (image_write_png(path, p.width, p.height, p.pixels, channels, error) ||
+                cli_fail("%s", error));
+    picture_free(&p);
     return ok;
 }
 
 /* Writes what one frame gave; frame -1: no sequence. */
-static bool write_frame(const cli_options *options, const cli_scene *scene, cli_session *session,
-                        const cli_shot *shot, int64_t frame) {
-    const char *paths[2] = {options->dump, options->out};
+static bool write_frame(const surroundings *around, cli_session *session, const cli_shot *shot,
+                        int64_t frame) {
+    const char *paths[2] = {around->options->dump, around->options->out};
     bool ok = true;
     for (int i = 0; i < 2 && ok; i++) {
         if (!paths[i])
@@ -121,8 +130,8 @@ static bool write_frame(const cli_options *options, const cli_scene *scene, cli_
         char *numbered = frame < 0 ? NULL : frame_path(paths[i], (uint32_t)frame);
         const char *path = numbered ? numbered : paths[i];
         ok = (frame < 0 || numbered) && cli_go_on() &&
-             (i == 0 ? cli_dump(path, session, scene, shot)
-                     : write_picture(path, options, scene, session, shot));
+             (i == 0 ? cli_dump(path, session, around->scene, shot)
+                     : write_picture(path, around, session, shot));
         free(numbered);
     }
     return ok;
@@ -131,8 +140,9 @@ static bool write_frame(const cli_options *options, const cli_scene *scene, cli_
 /* ---- all frames ------------------------------------------------------------------------- */
 
 /* With timings a first frame goes uncounted: it builds shaders and images. */
-static bool render_frames(const cli_options *options, const cli_scene *scene, cli_session *session,
-                          cli_shot *shot) {
+static bool render_frames(const surroundings *around, cli_session *session, cli_shot *shot) {
+    const cli_options *options = around->options;
+    const cli_scene *scene = around->scene;
     uint32_t count = options->frames ? options->frames : 1;
     uint32_t flags = options->timings ? LAO_FRAME_TIMINGS : 0;
     float start = shot->time;
@@ -143,7 +153,7 @@ static bool render_frames(const cli_options *options, const cli_scene *scene, cl
         if (count > 1)
             cli_progress_show(&progress, i, count);
         ok = cli_session_render(session, shot, flags) &&
-             write_frame(options, scene, session, shot, options->frames ? (int64_t)i : -1);
+             write_frame(around, session, shot, options->frames ? (int64_t)i : -1);
     }
     cli_progress_end(&progress);
     return ok;
@@ -170,11 +180,22 @@ static bool render(const cli_options *options, const cli_scene *scene) {
         return false;
     if (!options->out && !options->dump && !options->timings) /* only the camera: no device */
         return write_json(options, NULL, &shot);
-    bool ok = cli_session_open(&session, options->backend, scene, &shot,
+    surroundings around;
+    around.options = options;
+    around.scene = scene;
+    memcpy(around.paper, shot.background, sizeof around.paper);
+    if (options->backdrop && scene->volume_count == 0)
+        return cli_fail("--backdrop: shows what is behind the lines of a velocity volume or of "
+                        "--scene flow; there is neither");
+    if (options->backdrop) /* the lines alone; paper comes with what is behind them */
+        memset(shot.background, 0, sizeof shot.background);
+    memset(&session, 0, sizeof session);
+    bool ok = cli_context_make(scene, &shot, &around.context) &&
+              cli_session_open(&session, options->backend, scene, &shot,
                                options->dump ? LAO_VIEW_KEEP_IMAGES : 0) &&
-              render_frames(options, scene, &session, &shot) &&
-              write_json(options, &session, &shot);
+              render_frames(&around, &session, &shot) && write_json(options, &session, &shot);
     cli_session_close(&session);
+    cli_context_free(&around.context);
     return ok;
 }
 

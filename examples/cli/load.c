@@ -1,7 +1,9 @@
 #include "load.h"
 
 #include "camera.h"
+#include "context.h"
 #include "flow.h"
+#include "flow4d.h"
 #include "report.h"
 #include "scene.h"
 
@@ -84,7 +86,8 @@ static bool load_embedded(const cli_options *options, cli_set *set, cli_scene *o
     }
     memcpy(out->direction, scene.view_direction, sizeof out->direction);
     memcpy(out->up, scene.up, sizeof out->up);
-    bool ok = adopt(&scene, &set->lines);
+    bool ok = adopt(&scene, &set->lines) &&
+              (!options->backdrop || cli_context_keep_embedded(out, set->name));
     scene_free(&scene);
     return ok && cli_go_on();
 }
@@ -119,11 +122,15 @@ static void find_times(cli_set *set, cli_scene *out) {
 }
 
 static bool load_traced(const cli_options *options, const cli_source *first, uint32_t count,
-                        io_lines *lines) {
+                        io_lines *lines, cli_scene *out) {
     io_volume volume;
     if (!cli_read_volume(options, first, count, false, &volume))
         return false;
     bool ok = cli_trace(options, first->path, &volume, lines);
+    if (ok && options->backdrop) {
+        flow4d_field field = cli_field_of(&volume);
+        ok = cli_context_keep(out, &field);
+    }
     io_volume_free(&volume);
     return ok && cli_go_on();
 }
@@ -138,7 +145,7 @@ static bool load_set(const cli_options *options, const cli_source *first, uint32
     set->name = first->path;
     set->settings = source->settings;
     out->count++; /* freed with the scene from here on */
-    bool ok = volumes        ? load_traced(options, first, volumes, &set->lines)
+    bool ok = volumes        ? load_traced(options, first, volumes, &set->lines, out)
               : source->path ? cli_read_file(source, &set->lines)
                              : load_embedded(options, set, out);
     if (!ok)
@@ -187,6 +194,11 @@ void cli_scene_free(cli_scene *scene) {
         io_lines_free(&scene->sets[i].lines);
         free(scene->sets[i].colors);
     }
+    for (uint32_t i = 0; i < scene->volume_count; i++) {
+        free(scene->volumes[i].fastest);
+        free(scene->volumes[i].inside);
+    }
+    free(scene->volumes);
     free(scene->sets);
     memset(scene, 0, sizeof *scene);
 }

@@ -17,13 +17,23 @@ typedef struct cli_set {
     lao_settings settings;
 } cli_set;
 
+/* What --backdrop shows of a velocity volume: size[0] * size[1] * size[2] voxels, x fastest. */
+typedef struct cli_volume {
+    uint32_t size[3];
+    double to_mm[12]; /* rows of a 3x4 matrix: voxel index to mm, absolute */
+    float *fastest;   /* owned; greatest speed of the beat, m/s */
+    float *inside;    /* owned; at least 0.5: in the vessel; smooth, so that its outline is */
+} cli_volume;
+
 /* Everything that is drawn. Points are relative to `origin`, which is the first set's. */
 typedef struct cli_scene {
     cli_set *sets; /* owned */
     uint32_t count;
     double origin[3];
     float direction[3], up[3]; /* of the automatic camera */
-    double beat[2];            /* first and last time (ms); equal: none */
+    cli_volume *volumes;       /* owned; none unless --backdrop asks for them */
+    uint32_t volume_count;
+    double beat[2]; /* first and last time (ms); equal: none */
 } cli_scene;
 
 /* Loads what the options name. False: reported, nothing to free. */

@@ -25,7 +25,7 @@ static backdrop_look filled(const backdrop_look *look, uint32_t height) {
         f.line_width = look->line_width;
     }
     if (!(f.line_width > 0))
-        f.line_width = height > 500 ? height / 500.0 : 1;
+        f.line_width = height > 600 ? height / 400.0 : 1.5;
     return f;
 }
 

@@ -13,7 +13,7 @@
 typedef struct backdrop_look {
     double low[3], high[3]; /* colours of no and of full intensity; both zero: light greys */
     double range[2];        /* intensities of `low` and `high`; equal: 0 and the largest there is */
-    double line_width; /* of the outline, pixels; 0: 1/500 of the picture's height, at least 1 */
+    double line_width; /* of the outline, pixels; 0: 1/400 of the picture's height, at least 1.5 */
     double line[3];    /* colour of the outline; zero: dark grey (black: 1/255) */
 } backdrop_look;
 

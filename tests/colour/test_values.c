@@ -350,6 +350,38 @@ static void sheets_hold_their_pictures(void **state) {
     assert_int_equal(access("x.png", F_OK), -1);
 }
 
+/* Behind and around the lines, and never instead of them: with the backdrop a pixel that lines
+ * cover entirely changes by the outline alone; elsewhere the paper gets darker, not dark, where the
+ * blood is fast; dark pixels run all around. */
+static void backdrops_stand_behind_the_lines(void **state) {
+    const char *flags = "--scene flow --lines 60 --size 240x200 --ssaa 1 --occlusion off";
+    (void)state;
+    expect_ok(RUN("render %s -o l0.png", flags));
+    expect_ok(RUN("render %s --background 0,0,0,0 -o l1.png", flags));
+    expect_ok(RUN("render %s --backdrop -o l2.png", flags));
+    pixels plain = read_pixels("l0.png"), with = read_pixels("l2.png");
+    uint32_t width, height, kept = 0, drawn = 0, darker = 0, dark = 0;
+    uint8_t *lines;
+    assert_true(image_read_png("l1.png", 4, &width, &height, &lines, NULL));
+    for (size_t i = 0; i < (size_t)width * height; i++) {
+        const uint8_t *a = plain.rgb + 3 * i, *b = with.rgb + 3 * i;
+        bool same = memcmp(a, b, 3) == 0;
+        drawn += lines[4 * i + 3] == 255;
+        kept += lines[4 * i + 3] == 255 && same;
+        dark += lines[4 * i + 3] == 0 && b[0] < 120;
+        darker += lines[4 * i + 3] == 0 && b[0] < a[0] - 8 && b[0] > 180;
+        if (lines[4 * i + 3] == 0)
+            assert_true(b[0] <= a[0] + 1); /* never lighter than paper */
+    }
+    assert_true(drawn > 3000 && kept > drawn * 9 / 10);
+    assert_true(darker > 300); /* the projection */
+    assert_true(dark > 200);   /* the outline */
+    free(lines);
+    free(plain.rgb);
+    free(with.rgb);
+    expect_fault(RUN("render --backdrop -o x.png"), 1, "--backdrop");
+}
+
 static int enter_folder(void **state) {
     static char folder[] = "/tmp/lineao-values-XXXXXX";
     *state = folder;
@@ -375,6 +407,7 @@ int main(int argc, char **argv) {
         cmocka_unit_test(hues_alone_survive_multiplication),
         cmocka_unit_test(legends_are_drawn_where_asked),
         cmocka_unit_test(sheets_hold_their_pictures),
+        cmocka_unit_test(backdrops_stand_behind_the_lines),
     };
     program = argc > 1 ? argv[1] : "lineao";
     return cmocka_run_group_tests(tests, enter_folder, leave_folder);
