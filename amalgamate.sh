@@ -12,7 +12,7 @@ cd "$(dirname "$0")"
 
 # Shaders by module; a module's header is where its shared text is.
 MODULES="lines"
-lines_shaders="fullscreen import_depth export_depth cover lines level_zero level_up occlusion smooth shade resolve present"
+lines_shaders="fullscreen import_depth export_depth cover lines lines_rim lines_halo level_zero level_up occlusion smooth shade resolve present"
 lines_header="" # lineao.h's text stands in front of all
 
 work=$(mktemp -d)
@@ -77,7 +77,7 @@ names() { # second and further arguments of a macro: names MACRO file
 
 make_shader() { # arrays and the table row of one shader of $module
     name=$1
-    strip <"shaders/$name.glsl" |
+    awk '/^LAO_INCLUDE / {while ((getline line < ("shaders/" $2)) > 0) print line; next} {print}' "shaders/$name.glsl" | strip |
         awk -v levels="$work/levels" '/^LAO_GENERATED_LEVELS$/ {while ((getline line < levels) > 0) print line; next} {print}' \
             >"$work/$name.body"
     has_vertex=$(grep -c '^#ifdef LAO_VERTEX' "$work/$name.body" || true)

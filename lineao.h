@@ -416,7 +416,28 @@ LAO_API const lao_pass_row *lao_passes(int *count);
       "what parallel lines still darken each other (A0 of Eq. 11)")                                \
     X(light, ENUM, 0, 1, 0, 1, "", "paper|author",                                                 \
       "light that takes occlusion away: Eq. 8, or the author's program")                           \
-    X(halo, ENUM, 0, 0, 0, 1, "", "none", "outline of lines")                                      \
+    X(halo, ENUM, 0, 2, 2, 1, "", "none|uniform|depth",                                            \
+      "dark border of lines: the same everywhere, or only where a line passes in front of others") \
+    X(halo_width, FLOAT, 0, 0.5f, 0.1f, 0, "", "",                                                 \
+      "border on each side in parts of half the width; twice this in depth halos (b)")             \
+    X(halo_depth, FLOAT, 0, 1, 0.01f, 0, "", "",                                                   \
+      "how far behind its line a depth halo reaches, in parts of the scene's depth (d_max)")       \
+    X(halo_function, ENUM, 0, 2, 0, 1, "", "sqrt|linear|square",                                   \
+      "how a depth halo falls back from the middle to the edge: square sets more lines apart")     \
+    X(halo_border, ENUM, 0, 1, 0, 1, "", "hard|soft",                                              \
+      "black border, or one that darkens towards the edge, as in the author's program")            \
+    X(trail, ENUM, 0, 3, 0, 1, "", "none|taper|opacity|highlight",                                 \
+      "what shows the time of a frame: nothing, a trail that narrows or fades, or lit lines")      \
+    X(trail_length, FLOAT, 0.001f, 1e6f, 25, 0, "ms", "",                                          \
+      "length of a trail before and behind the time of the frame")                                 \
+    X(taper_start, FLOAT, 0, 0.999f, 0.333333333f, 0, "", "",                                      \
+      "where a trail begins to narrow or fade, in parts of its length (p)")                        \
+    X(taper_width, FLOAT, 0.001f, 1, 0.25f, 0, "", "",                                             \
+      "width of a trail's end, in parts of the full width")                                        \
+    X(period, FLOAT, 0, 1e6f, 0, 0, "ms", "",                                                      \
+      "time after which the lines' times repeat, as a heart beat does; 0: never")                  \
+    X(highlight_beta, FLOAT, 0.001f, 1e7f, 1600, 0, "ms^2", "",                                    \
+      "how long the lit part of a line is: 2 sigma^2 of its bell curve in time (beta)")            \
     X(levels, INT, 1, 8, 3, 1, "", "",                                                             \
       "levels of the occlusion pyramid, each with a larger radius (s_r)")                          \
     X(samples, INT, 1, 128, 32, 1, "", "",                                                         \
@@ -577,7 +598,7 @@ typedef struct lao_lines_desc {
     uint32_t point_count;
     const uint32_t *offsets; /* line_count + 1 indices of points; NULL: one line of all points */
     const float *points;     /* 3 * point_count, mm */
-    const float *times;      /* (Optional) point_count, ms */
+    const float *times;      /* (Optional) point_count, ms; NaN: never; absent: 0 */
     const uint8_t *colors;   /* (Optional) 4 * point_count, RGBA, display values */
     float color[4];          /* without `colors`: one colour, display values 0..1; all zero: sand */
 } lao_lines_desc;
@@ -690,10 +711,10 @@ LAO_API lao_result lao_view_destroy(lao_context *context, lao_view view);
 LAO_API lao_result lao_render(lao_context *context, const lao_frame *frame);
 
 /* Occlusion and shading of a G-buffer that the host drew: `frame->imports` must name "color" (RGBA,
-   alpha 1 where covered), "tangent" (xyz: unit tangent in canonical view space; w: pixels per mm,
-   0: from depth) and "depth" (METHODS of docs/algorithm.md: 0..1 over the scene sphere), all of
-   view size times supersampling, row 0 at the bottom. No sets are drawn; `settings` may be NULL.
-   frame->sphere is required. */
+   alpha 1 where covered; 1/2 to 1 dims highlights), "tangent" (xyz: unit tangent in canonical view
+   space; w: pixels per mm, 0: from depth) and "depth" (METHODS of docs/algorithm.md: 0..1 over the
+   scene sphere), all of view size times supersampling, row 0 at the bottom. No sets are drawn;
+   `settings` may be NULL. frame->sphere is required. */
 LAO_API lao_result lao_occlude(lao_context *context, const lao_frame *frame,
                                const lao_settings *settings);
 
@@ -1526,6 +1547,8 @@ LAO_FN float lao_pixel_zoom(lao_v4 scale, lao_v4 depth, float scene_depth) {
 /* Where one end of a segment puts its two corners: p + along -/+ across. */
 struct lao_line_end {
     lao_v3 across, along, tangent, normal;
+    float square; /* 1: ends square, half a width beyond the joint; 0: at it, or mitred */
+    float seen;   /* length of `own` across the view */
 };
 #ifndef LAO_GLSL
 typedef struct lao_line_end lao_line_end;
@@ -1552,6 +1575,9 @@ LAO_FN lao_line_end lao_line_join(lao_v3 e, lao_v3 own, lao_v3 other, float half
     end.across = lao_v3_scale(o, half_width);
     end.along = lao_v3_make(0.0f, 0.0f, 0.0f);
     end.tangent = lao_v3_unit(own, right);
+    end.square = 0.0f;
+    LAO_EXACT float seen = lao_sqrt(own_length2 * lao_v3_dot(own, own));
+    end.seen = seen;
     if (other_length2 > 1.0e-12f) {
         lao_v3 n = lao_v3_unit(other_cross, o);
         LAO_EXACT float c = lao_v3_dot(o, n);
@@ -1564,6 +1590,7 @@ LAO_FN lao_line_end lao_line_join(lao_v3 e, lao_v3 own, lao_v3 other, float half
             end.tangent = lao_v3_unit(lao_v3_add(own, other), end.tangent);
         } else {
             end.along = lao_v3_scale(lao_v3_cross(o, ray), half_width * outward);
+            end.square = 1.0f;
         }
     }
     return end;
@@ -1597,6 +1624,172 @@ LAO_FN lao_v2 lao_screen_axial(lao_v3 t, lao_v2 slope, lao_v4 scale, float ortho
     LAO_EXACT float c = (x * x - y * y) / length2;
     LAO_EXACT float s = 2.0f * x * y / length2;
     return lao_v2_make(c, s);
+}
+
+/* ---- halos (METHODS 3; Koehler 2017, 4.3; Everts 2009) */
+#define LAO_HALO_NONE 0
+#define LAO_HALO_UNIFORM 1
+#define LAO_HALO_DEPTH 2
+#define LAO_HALO_SQRT 0
+#define LAO_HALO_LINEAR 1
+#define LAO_HALO_SQUARE 2
+#define LAO_HALO_HARD 0
+#define LAO_HALO_SOFT 1
+/* What a corner of a segment gives the fragments to tell how far out they are: x = -1 .. 1 across
+   the line; y, z: how far beyond the end and the start of the segment, in half widths, so that a
+   square end has a border as the sides have; a mitred or open one has none, as it ends at 0.
+   length: of the segment as seen, in half widths. */
+LAO_FN lao_v3 lao_rim_corner(float side, bool at_end, float square, float length) {
+    LAO_EXACT float beyond = -length - square;
+    return lao_v3_make(side, at_end ? square : beyond, at_end ? beyond : square);
+}
+/* A place x, seen from a joint where two segments end square, in half widths of the neighbour,
+   which leaves in the line's direction (outward: 1) or comes from there (-1): across it, and how
+   far beyond its end. Far outside where the ends are not square. */
+LAO_FN lao_v2 lao_rim_neighbour(lao_v3 x, lao_v3 e, lao_v3 other, float half_width, float outward,
+                                float square) {
+    if (square < 0.5f) {
+        return lao_v2_make(2.0f, 2.0f);
+    }
+    lao_v3 right = lao_v3_make(1.0f, 0.0f, 0.0f);
+    lao_v3 ray = lao_v3_unit(e, lao_v3_make(0.0f, 0.0f, -1.0f));
+    lao_v3 o = lao_v3_unit(lao_v3_cross(ray, lao_v3_unit(other, right)), right);
+    LAO_EXACT float across = lao_v3_dot(x, o) / half_width;
+    LAO_EXACT float along = -outward * lao_v3_dot(x, lao_v3_cross(o, ray)) / half_width;
+    return lao_v2_make(across, along);
+}
+/* The outline of two ribbons that overlap at a joint is that of their union. */
+LAO_FN float lao_rim_union(float s, lao_v2 neighbour) {
+    return lao_min(s, lao_max(lao_abs(neighbour.x), neighbour.y));
+}
+/* 0 in the middle of a line, 1 at its outline. */
+LAO_FN float lao_rim(lao_v3 rim) {
+    return lao_min(lao_max(lao_abs(rim.x), lao_max(rim.y, rim.z)), 1.0f);
+}
+/* Where the border begins. */
+LAO_FN float lao_halo_begin(float width, lao_int halo) {
+    LAO_EXACT float begin = 1.0f - (halo == LAO_HALO_DEPTH ? 2.0f * width : width);
+    return begin;
+}
+/* The light that a fragment keeps: all of it inside, none in a hard border. */
+LAO_FN float lao_halo_light(float s, float begin, lao_int border) {
+    LAO_EXACT float t = (1.0f - s) / lao_max(1.0f - begin, 1.0e-6f);
+    LAO_EXACT float soft = t * t;
+    return s < begin ? 1.0f : (border == LAO_HALO_SOFT ? soft : 0.0f);
+}
+/* The alpha of the G-buffer's colour: covered (at least 1/2), and the light kept in 128 steps, by
+   which highlights are dimmed as the colour is. */
+LAO_FN float lao_light_pack(float light) {
+    LAO_EXACT float alpha = 0.501960784f + 0.498039216f * light; /* (128 + 127 light) / 255 */
+    return alpha;
+}
+LAO_FN float lao_light_unpack(float alpha) {
+    LAO_EXACT float light = (255.0f * alpha - 128.0f) / 127.0f;
+    return lao_clamp01(light);
+}
+/* How far back a fragment is moved, in parts of the largest displacement: 0 inside, f(s) in the
+   border (f_displacement). */
+LAO_FN float lao_halo_displacement(float s, float begin, lao_int function) {
+    LAO_EXACT float square = s * s;
+    float f = function == LAO_HALO_SQRT ? lao_sqrt(s) : (function == LAO_HALO_LINEAR ? s : square);
+    return s < begin ? 0.0f : f;
+}
+/* Depth buffer value of view depth z: the inverse of lao_frame_uniforms.unproject. */
+LAO_FN float lao_window_depth(lao_v4 unproject, float z) {
+    LAO_EXACT float d = (unproject.x - z * unproject.z) / (z * unproject.w - unproject.y);
+    return d;
+}
+/* Depth buffer value of a fragment moved back to view depth z, reversed or not: never so far that
+   the cleared buffer would hide it. */
+LAO_FN float lao_halo_depth(lao_v4 unproject, float z) {
+    return lao_min(lao_max(lao_window_depth(unproject, z), 1.0e-30f), 0.99999994f);
+}
+
+/* ---- trails (METHODS 2.7, 9.1; Koehler 2017, 4.1; Lawonn 2014, 5.2) */
+#define LAO_TRAIL_NONE 0
+#define LAO_TRAIL_TAPER 1
+#define LAO_TRAIL_OPACITY 2
+#define LAO_TRAIL_HIGHLIGHT 3
+/* The time of the frame within its period; itself where there is none. */
+LAO_FN float lao_trail_now(float time, float period) {
+    LAO_EXACT float now = time - period * lao_floor(time / period);
+    return period > 0.0f ? now : time;
+}
+/* What to take from t - now to bring it nearest to 0: whole periods. */
+LAO_FN float lao_trail_shift(float t, float now, float period) {
+    LAO_EXACT float shift = period * lao_floor((t - now) / period + 0.5f);
+    return period > 0.0f ? shift : 0.0f;
+}
+/* |t - now|, to the nearest repetition. */
+LAO_FN float lao_trail_distance(float t, float now, float period) {
+    LAO_EXACT float distance = lao_abs(t - now - lao_trail_shift(t, now, period));
+    return distance;
+}
+/* The part of a segment, 0 .. 1 from its start to its end, that a trail covers; first >= last:
+   none. */
+struct lao_trail_part {
+    float first, last;
+};
+#ifndef LAO_GLSL
+typedef struct lao_trail_part lao_trail_part;
+#endif
+/* t1, t2: times of the segment's ends; |t - now| <= length is covered, to the nearest repetition of
+   the segment's middle. */
+LAO_FN lao_trail_part lao_trail_clip(float t1, float t2, float now, float length, float period) {
+    lao_trail_part part;
+    LAO_EXACT float middle = 0.5f * t1 + 0.5f * t2;
+    float shift = lao_trail_shift(middle, now, period);
+    LAO_EXACT float a = t1 - now - shift;
+    LAO_EXACT float b = t2 - now - shift;
+    part.first = 0.0f;
+    part.last = 1.0f;
+    if (period > 0.0f && 2.0f * length >= period) {
+        return part;
+    }
+    if (!(lao_min(a, b) <= length && lao_max(a, b) >= -length)) {
+        part.last = 0.0f;
+        return part;
+    }
+    if (lao_abs(a) > length) {
+        LAO_EXACT float u = ((a < 0.0f ? -length : length) - a) / (b - a);
+        part.first = lao_clamp01(u);
+    }
+    if (lao_abs(b) > length) {
+        LAO_EXACT float u = ((b < 0.0f ? -length : length) - a) / (b - a);
+        part.last = lao_clamp01(u);
+    }
+    return part;
+}
+/* Width of a trail at q = |t - now| / length: 1 up to `start`, then falling to `least` at 1, 0
+   beyond. */
+LAO_FN float lao_trail_width(float q, float start, float least) {
+    LAO_EXACT float width = 1.0f - (1.0f - least) * lao_max(q - start, 0.0f) / (1.0f - start);
+    return q <= 1.0f ? width : 0.0f;
+}
+/* Opacity of the fade that tapering replaces: 1 up to `start`, then falling to 0 at 1. */
+LAO_FN float lao_trail_opacity(float q, float start) {
+    return lao_trail_width(q, start, 0.0f);
+}
+/* Least opacity that is drawn at a pixel, (n + 1/2) / 16: an ordered pattern of 4 x 4 in which each
+   2 x 2 has a quarter, so that supersampling averages it. */
+LAO_FN float lao_screen_door(lao_uint x, lao_uint y) {
+    lao_uint d = x ^ y;
+    lao_uint n = ((d & 1u) << 3u) | ((y & 1u) << 2u) | (d & 2u) | ((y >> 1u) & 1u);
+    LAO_EXACT float least = (LAO_F(n) + 0.5f) * 0.0625f;
+    return least;
+}
+/* Brightness of a line at |t - now|: exp(-distance^2 / beta), clamped to [1/4, 1]. */
+LAO_FN float lao_trail_highlight(float distance, float beta) {
+    LAO_EXACT float x = -1.44269504f * distance * distance / beta;
+    return lao_max(lao_exp2(x), 0.25f);
+}
+/* The colour half-way to the grey of its luminance. */
+LAO_FN lao_v3 lao_desaturate(lao_v3 color) {
+    LAO_EXACT float grey = 0.2126f * color.x + 0.7152f * color.y + 0.0722f * color.z;
+    LAO_EXACT float x = 0.5f * color.x + 0.5f * grey;
+    LAO_EXACT float y = 0.5f * color.y + 0.5f * grey;
+    LAO_EXACT float z = 0.5f * color.z + 0.5f * grey;
+    return lao_v3_make(x, y, z);
 }
 
 /* ---- occlusion (METHODS 1.5 - 1.9, 2.3 - 2.5) */
@@ -1877,8 +2070,15 @@ static const lao_pass_row lao__passes[] = {
     /* the host's depth, so that its objects hide our lines */
     {"import_depth", LAO_PASS_FULLSCREEN, "import_depth", 0, LAO_STAGE_DRAW, LAO_SCOPE_FRAME, LAO_REPEAT_NONE, NULL, LAO_BLEND_NONE, LAO_DEPTH_ALWAYS, LAO_CULL_NONE, {{"@host_depth", '>', 0}},
      {LAO__WRITE("zbuffer")}, {LAO__READ("host_depth")}},
-    /* G-buffer: colour and mask, tangent and zoom, linear depth (METHODS 1.1) */
-    {"lines", LAO_PASS_DRAW_LINES, "lines", 0, LAO_STAGE_DRAW, LAO_SCOPE_PER_SET, LAO_REPEAT_NONE, NULL, LAO_BLEND_NONE, LAO_DEPTH_NEARER, LAO_CULL_NONE, LAO__ALWAYS,
+    /* G-buffer: colour and mask, tangent and zoom, linear depth (METHODS 1.1). One row of four draws a set: what the fragments need to know of the line's
+       outline or of a fade costs where there is none, and who writes depth is tested late */
+    {"lines", LAO_PASS_DRAW_LINES, "lines", 0, LAO_STAGE_DRAW, LAO_SCOPE_PER_SET, LAO_REPEAT_NONE, NULL, LAO_BLEND_NONE, LAO_DEPTH_NEARER, LAO_CULL_NONE, {{"halo", '=', LAO_HALO_NONE}, {"trail", '!', LAO_TRAIL_OPACITY}},
+     {LAO__CLEAR("color"), LAO__CLEAR("tangent"), LAO__CLEAR("depth"), LAO__KEEP("zbuffer")}, {LAO__READ("#points"), LAO__READ("#colors")}},
+    {"lines_fading", LAO_PASS_DRAW_LINES, "lines_rim", 0, LAO_STAGE_DRAW, LAO_SCOPE_PER_SET, LAO_REPEAT_NONE, NULL, LAO_BLEND_NONE, LAO_DEPTH_NEARER, LAO_CULL_NONE, {{"halo", '=', LAO_HALO_NONE}, {"trail", '=', LAO_TRAIL_OPACITY}},
+     {LAO__CLEAR("color"), LAO__CLEAR("tangent"), LAO__CLEAR("depth"), LAO__KEEP("zbuffer")}, {LAO__READ("#points"), LAO__READ("#colors")}},
+    {"lines_rim", LAO_PASS_DRAW_LINES, "lines_rim", 0, LAO_STAGE_DRAW, LAO_SCOPE_PER_SET, LAO_REPEAT_NONE, NULL, LAO_BLEND_NONE, LAO_DEPTH_NEARER, LAO_CULL_NONE, {{"halo", '=', LAO_HALO_UNIFORM}},
+     {LAO__CLEAR("color"), LAO__CLEAR("tangent"), LAO__CLEAR("depth"), LAO__KEEP("zbuffer")}, {LAO__READ("#points"), LAO__READ("#colors")}},
+    {"lines_halo", LAO_PASS_DRAW_LINES, "lines_halo", 0, LAO_STAGE_DRAW, LAO_SCOPE_PER_SET, LAO_REPEAT_NONE, NULL, LAO_BLEND_NONE, LAO_DEPTH_NEARER, LAO_CULL_NONE, {{"halo", '=', LAO_HALO_DEPTH}},
      {LAO__CLEAR("color"), LAO__CLEAR("tangent"), LAO__CLEAR("depth"), LAO__KEEP("zbuffer")}, {LAO__READ("#points"), LAO__READ("#colors")}},
     /* the host's G-buffer instead of our lines: its mask as depth, for the passes that skip background by it */
     {"cover", LAO_PASS_FULLSCREEN, "cover", 0, LAO_STAGE_DRAW, LAO_SCOPE_PER_SET, LAO_REPEAT_NONE, NULL, LAO_BLEND_NONE, LAO_DEPTH_ALWAYS, LAO_CULL_NONE, {{"@color", '>', 0}},
@@ -1919,6 +2119,7 @@ static const lao_setting_row lao__settings[] = {
 static const lao_preset_row lao__presets[] = {
     {"classic", "align", LAO_ALIGN_NONE},
     {"classic", "strength", 1},
+    {"classic", "halo", LAO_HALO_NONE},
     {"paper", "align", LAO_ALIGN_PAPER}
 };
 
@@ -3636,13 +3837,18 @@ typedef struct lao__texels {
     uint64_t count;
 } lao__texels;
 
+/* A time that is none, or too large to be told from a ghost's, is never reached. */
+static float lao__time(float time) {
+    return time > -1.0e30f && time < 1.0e30f ? time : 1.0e30f;
+}
+
 static void lao__texel(lao__texels *out, const lao_lines_desc *desc, uint32_t position,
                        uint32_t attribute, int ghost) {
     if (out->points) {
         float *p = out->points + 4 * out->count;
         uint8_t *c = out->colors + 4 * out->count;
         memcpy(p, desc->points + 3 * (size_t)position, 3 * sizeof *p);
-        p[3] = ghost ? LAO_GHOST_TIME : desc->times ? desc->times[attribute] : 0.0f;
+        p[3] = ghost ? LAO_GHOST_TIME : desc->times ? lao__time(desc->times[attribute]) : 0.0f;
         if (desc->colors) {
             memcpy(c, desc->colors + 4 * (size_t)attribute, 4);
         } else {

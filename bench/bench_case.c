@@ -310,6 +310,15 @@ static bool covered_count(const work *w, side *s) {
 
 /* ---- telling ------------------------------------------------------------------------------ */
 
+/* The pass that drew the lines: of its rows the plan has one. */
+static const series *lines_find(const shot *it) {
+    for (uint32_t i = 0; i < it->pass_count; i++) {
+        if (strncmp(it->passes[i].name, "lines", 5) == 0)
+            return &it->passes[i].time;
+    }
+    return NULL;
+}
+
 static const series *pass_find(const shot *it, const char *name) {
     for (uint32_t i = 0; i < it->pass_count; i++) {
         if (strcmp(it->passes[i].name, name) == 0)
@@ -363,7 +372,7 @@ static void shot_tell(const side *s, uint32_t preset, uint32_t pixels, cJSON *ou
         add_series(row, NULL, &it->passes[i].time);
     }
     add_number(out, "lines_over_floor",
-               quotient(pass_find(it, "lines"), pass_find(it, "floor_lines")));
+               quotient(lines_find(it), pass_find(it, "floor_lines")));
     add_number(out, "occlusion_over_floor", over(cost.covered, taps));
     add_number(out, "occlusion_over_fetches", over(cost.covered, fetches));
     add_number(out, "occlusion_pass_over_floor_pass",

@@ -77,9 +77,9 @@ END
   printf 'out_sum = vec4(sum.x + sum.y + sum.z + sum.w);\n}\n#endif\n'
 }
 
-# The vertex stage of the line pass with one flat colour.
+# The vertex stage of the line pass without halo and trail, with one flat colour.
 lines_floor() {
-  text lao_lines_lines | awk '/^LAO_OUT\(/ {exit} {print}'
+  text lao_lines_lines | sed '/^LAO_OUT(/,$d; s/^LAO_CONSTANT(.*, \(.*\))/const int \1 = 0;/'
   printf 'LAO_OUT(0, vec4, out_color)\n#ifdef LAO_FRAGMENT\nvoid main() { out_color = vec4(1.0); }\n#endif\n'
 }
 

@@ -33,8 +33,9 @@ void main() {
                          1.0);
         return;
     }
+    LAO_EXACT float specular = lao_setting_specular * lao_light_unpack(base.w);
     out_color = vec4(lao_shade(base.xyz, texelFetch(tangent, pixel, 0).xyz, l, lao_setting_ambient, lao_setting_diffuse,
-                               lao_setting_specular, lao_constant_shininess, lao_setting_strength * occlusion),
+                               specular, lao_constant_shininess, lao_setting_strength * occlusion),
                      1.0);
 }
 #endif

@@ -196,11 +196,14 @@ static bool add_image(exr_writer *w, cli_session *session, const lao_image_row *
         float *data = cli_session_image(session, row->name, level, &info);
         if (!data)
             return info.width == 0; /* the plan has no such image or level */
+        size_t texels = (size_t)info.width * info.height * info.channels;
         for (uint32_t c = 0; ok && c < 4 && c < info.channels; c++) {
             char name[NAME];
             if (!row->channels[c])
                 continue;
             channel_name(row->channels[c], level, name);
+            for (size_t i = c; strcmp(name, "mask.V") == 0 && i < texels; i += info.channels)
+                data[i] = data[i] >= 0.5f ? 1.0f : 0.0f; /* halos keep their light there too */
             ok = add_channel(w, name, data, c, &info);
         }
         free(data);

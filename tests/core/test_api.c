@@ -631,7 +631,7 @@ static int session(core_host *host, uint32_t fail_allocation, uint32_t fail_call
     ATTEMPT(lao_render(context, &frame), 1);
     memset(timings, 0, sizeof timings);
     ATTEMPT(lao_timings(context, view, timings, &count), count == 64 && timings[0].pass == NULL);
-    assert_string_equal(timings[0].pass, "lines");
+    assert_string_equal(timings[0].pass, "lines_halo");
     assert_true(count > 10 && count < 64);
     for (size_t i = 0; i < sizeof pixels / sizeof pixels[0]; i++) {
         pixels[i] = 7;

@@ -343,7 +343,8 @@ static lao_v4 shade_pixel(const c_inputs *in, int x, int y) {
         return lao_v4_make(c.x, c.y, c.z, 1);
     }
     c = lao_shade(lao_v3_make(base.x, base.y, base.z), lao_v3_make(t.x, t.y, t.z), l, s->ambient,
-                  s->diffuse, s->specular, (int)s->shininess, s->strength * occlusion);
+                  s->diffuse, s->specular * lao_light_unpack(base.w), (int)s->shininess,
+                  s->strength * occlusion);
     return lao_v4_make(c.x, c.y, c.z, 1);
 }
 

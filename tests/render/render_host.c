@@ -160,12 +160,15 @@ void render_point(render_lines *lines, double x, double y, double z) {
     if (lines->point_count == lines->point_capacity) {
         lines->point_capacity = lines->point_capacity ? 2 * lines->point_capacity : 256;
         lines->points = grown(lines->points, lines->point_capacity, 3 * sizeof *lines->points);
+        lines->times = grown(lines->times, lines->point_capacity, sizeof *lines->times);
         lines->colors = grown(lines->colors, lines->point_capacity, 4);
     }
     p = lines->points + 3 * (size_t)lines->point_count;
     p[0] = (float)x;
     p[1] = (float)y;
     p[2] = (float)z;
+    lines->times[lines->point_count] =
+        4 * (float)(lines->point_count - (lines->offsets ? lines->offsets[lines->line_count] : 0));
     c = lines->colors + 4 * (size_t)lines->point_count;
     for (uint32_t k = 0; k < 3; k++)
         c[k] = (uint8_t)(lao_hash(4 * lines->point_count + k) >> 24);
@@ -218,6 +221,7 @@ void render_scatter(render_lines *lines, uint32_t count, uint32_t seed, double l
 void render_lines_free(render_lines *lines) {
     free(lines->offsets);
     free(lines->points);
+    free(lines->times);
     free(lines->colors);
     memset(lines, 0, sizeof *lines);
 }
@@ -477,6 +481,7 @@ static lao_lines upload(render_device *device, const render_lines *lines) {
     desc.point_count = lines->point_count;
     desc.offsets = lines->offsets;
     desc.points = lines->points;
+    desc.times = lines->times;
     desc.colors = lines->colors;
     succeeds(device, lao_lines_create(device->context, &desc, &handle));
     return handle;
@@ -542,6 +547,7 @@ void render_draw(render_device *device, const render_shot *shot, render_result *
     frame.camera = shot->camera;
     memcpy(frame.background, shot->background, sizeof frame.background);
     memcpy(frame.sphere, shot->sphere, sizeof frame.sphere);
+    frame.time = shot->time;
     if (shot->host_depth) {
         surface_make(device, &depth, LAO_FORMAT_D32F, shot->width, shot->height, shot->depth_value);
         import.image = "host_depth";

@@ -43,6 +43,7 @@ typedef struct render_lines {
     uint32_t line_count, point_count, line_capacity, point_capacity;
     uint32_t *offsets;
     float *points;
+    float *times; /* 4 ms from point to point of a line, unless changed */
     uint8_t *colors;
 } render_lines;
 
@@ -79,7 +80,7 @@ typedef struct render_shot {
     const render_lines *lines[RENDER_MOST_SETS];
     const lao_settings *settings[RENDER_MOST_SETS];
     uint32_t set_count;
-    float background[4], sphere[4];
+    float background[4], sphere[4], time;
     enum render_target target;
     uint32_t target_flags; /* LAO_HOST_... */
     float target_value;    /* grey and alpha that it holds before */

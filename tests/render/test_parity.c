@@ -36,6 +36,7 @@ static render_shot mixed(int camera) {
     }
     shot.lines[0] = &board;
     shot.set_count = 1;
+    shot.time = 23.4f;
     for (int k = 0; k < 3; k++)
         shot.background[k] = 0.2f + 0.3f * (float)k;
     shot.background[3] = 1;
@@ -165,6 +166,38 @@ static void test_levels(void **state) {
     shoot("5 levels", 0, five);
 }
 
+static void test_halos(void **state) {
+    static const char *const shots[][9] = {
+        {"halo", "uniform", "occlusion", "off"},
+        {"halo", "uniform", "halo_border", "soft", "occlusion", "off"},
+        {"halo", "depth", "halo_border", "soft", "halo_width", "0.3", "occlusion", "off"},
+        {"halo", "depth", "halo_function", "linear", "halo_depth", "0.1", "occlusion", "off"},
+        {"halo", "depth", "halo_function", "square", "halo_depth", "1", "occlusion", "off"}};
+    (void)state;
+    both();
+    for (size_t i = 0; i < sizeof shots / sizeof *shots; i++) {
+        for (int camera = 0; camera < CAMERAS; camera++)
+            shoot(shots[i][3], camera, shots[i]);
+    }
+}
+
+static void test_trails(void **state) {
+    static const char *const modes[] = {"taper", "opacity", "highlight"};
+    static const char *const halos[] = {"none", "uniform", "depth"};
+    (void)state;
+    both();
+    for (int i = 0; i < 9; i++) {
+        const char *const settings[] = {"trail",        modes[i % 3], "halo",      halos[i / 3],
+                                        "trail_length", "30",         "occlusion", "off",
+                                        "period",       "100",        NULL};
+        shoot(modes[i % 3], i % CAMERAS, settings);
+    }
+    {
+        static const char *const settings[] = {"trail", "taper", "trail_length", "30", NULL};
+        shoot("taper with occlusion", 0, settings);
+    }
+}
+
 static void test_two_sets(void **state) {
     render_shot shot = mixed(0);
     lao_settings wide, narrow;
@@ -174,7 +207,7 @@ static void test_two_sets(void **state) {
     memset(&narrow, 0, sizeof narrow);
     wide.width = 1.5f;
     narrow.width = 0.3f;
-    narrow.preset = 1;
+    narrow.preset = 1; /* without halo, and the other with one */
     narrow.strength = 2;
     shot.lines[1] = &few;
     shot.settings[0] = &narrow;
@@ -256,6 +289,8 @@ int main(int argc, char **argv) {
         cmocka_unit_test(test_two_sets),
         cmocka_unit_test(test_targets),
         cmocka_unit_test(test_host_depth),
+        cmocka_unit_test(test_halos),
+        cmocka_unit_test(test_trails),
     };
     if (argc > 1)
         samples = argv[1];

@@ -99,6 +99,7 @@ static void shoot(render_device *device, const char *what, const char *const *te
         assert_int_equal(
             lao_setting_parse(module, lao_setting_find(module, text[0]), text[1], &settings), 0);
     shot.settings[0] = &settings;
+    shot.time = 20;
     render_draw(device, &shot, &result);
     check(device, what, &result, &settings);
     render_free(&result);
@@ -128,6 +129,15 @@ static void test_paper(void **state) {
     static const char *const text[] = {"preset", "paper", NULL};
     (void)state;
     shoot(&gl, "paper", text);
+}
+
+/* Borders keep part of the light; tapered lines are occluded as wide ones. */
+static void test_soft_trails(void **state) {
+    static const char *const text[] = {"halo_border",  "soft", "trail",      "taper",
+                                       "trail_length", "40",   "halo_width", "0.2",
+                                       "samples",      "20",   NULL};
+    (void)state;
+    shoot(&gl, "soft halos of trails", text);
 }
 
 static void test_author_light(void **state) {
@@ -310,6 +320,7 @@ int main(void) {
         cmocka_unit_test(test_show),
         cmocka_unit_test(test_present),
         cmocka_unit_test(test_host_depth),
+        cmocka_unit_test(test_soft_trails),
     };
     return cmocka_run_group_tests(tests, setup, teardown);
 }
