@@ -124,7 +124,7 @@ static void expect_colors(const char *what, const char *map_name, const double *
     size_t found = 0;
     assert_true(colour_map_make(map_name, &map));
     expect_ok(RUN("render --size 120x90 --ssaa 1 --occlusion off --width 1 --view axial --show "
-                  "color --background 0,0,0,0 --dump v.exr %s",
+                  "color --halo none --background 0,0,0,0 --dump v.exr %s",
                   what));
     shot s = read_shot("v.exr");
     for (int i = 0; i < count; i++) {
