@@ -1,7 +1,8 @@
 #!/bin/sh
 # Renders the figures of figures.table, one sheet of captioned panels each.
 #   figures.sh PROGRAM FOLDER [NAME...]    with the lineao program PROGRAM into FOLDER/NAME.png; no NAME: all of them
-# Prints the path of each sheet. Rows and columns of data made by others are drawn when LINEAO_DATA names their folder.
+# Prints the path of each sheet. Rows and columns of data made by others are drawn when LINEAO_DATA names their folder;
+# FIGURES_SIZE ("480x360") is a size of panels instead of the table's.
 set -eu
 LC_ALL=C
 export LC_ALL
@@ -82,7 +83,7 @@ while IFS='|' read -r first second third fourth fifth; do
             name=
             wanted "$rest" || continue
             name=$rest
-            size=$(trim "$second")
+            size=${FIGURES_SIZE:-$(trim "$second")}
             per_row=$(trim "$third")
             title=$(trim "$fourth")
             note=$(trim "$fifth")
