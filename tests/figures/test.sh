@@ -28,7 +28,7 @@ if [ "\$command" = render ]; then "$program" render "\$@" --lines 20 --dump /dev
 TEXT
 chmod +x "$work/program"
 
-"$script" "$work/program" "$work/all" >"$work/out" 2>"$work/err"
+"$script" "$work/program" "$work/all" >"$work/out" 2>"$work/err" || die "$(cat "$work/err")"
 figures=$(sed -n 's/^figure \([a-z0-9_]*\) .*/\1/p' "$root/examples/figures/figures.table")
 for name in $figures; do
     if [ "$name" = figure8_data ]; then
