@@ -66,7 +66,7 @@ static bool draw_legends(const cli_options *options, const cli_scene *scene, pic
     char titles[MOST][TITLE];
     legend legends[MOST];
     uint32_t count = 0, side = 0;
-    while (strcmp(sides[side], options->legend) != 0) /* one of the flag's choices */
+    while (side < 2 && strcmp(sides[side], options->legend) != 0) /* one of the flag's choices */
         side++;
     for (uint32_t s = 0; maps && s < scene->count && count < MOST; s++) {
         const cli_set *set = &scene->sets[s];

@@ -73,8 +73,8 @@ enum { ANCHORS = 6, PIECES = 64 /* of the curve between two anchors */ };
 /* Either anchors 0xrrggbb, or an arc of hues in degrees at one lightness and chroma. */
 typedef struct map_row {
     const char *name;
-    colour_kind kind;
     double lightness, chroma, hues[2];
+    colour_kind kind;
     uint32_t count, anchors[ANCHORS];
 } map_row;
 
@@ -82,13 +82,13 @@ typedef struct map_row {
  * arcs are as colourful as a display can show at all their hues. */
 // clang-format off
 static const map_row map_rows[] = {
-    {"viridis",     COLOUR_SEQUENTIAL,  0, 0, {0, 0}, 6, {0x440154, 0x414487, 0x2a788e, 0x22a884, 0x7ad151, 0xfde725}},
-    {"inferno",     COLOUR_SEQUENTIAL,  0, 0, {0, 0}, 6, {0x0b0724, 0x4a0c6b, 0xa52c60, 0xed6925, 0xf7d13d, 0xfcffa4}},
-    {"heat",        COLOUR_SEQUENTIAL,  0, 0, {0, 0}, 6, {0x5a0a0e, 0xa01c0c, 0xd24e08, 0xf08a1c, 0xf8c552, 0xfff6c8}},
-    {"coolwarm",    COLOUR_DIVERGING,   0, 0, {0, 0}, 5, {0x3b4cc0, 0x86a4f0, 0xdddddd, 0xf0977a, 0xb40426}},
-    {"phase",       COLOUR_CYCLIC,      0.72, 0.12, {20, 380}, 0, {0}},
-    {"isoluminant", COLOUR_ISOLUMINANT, 0.72, 0.12, {270, 0},  0, {0}},
-    {"gray",        COLOUR_SEQUENTIAL,  0, 0, {0, 0}, 2, {0x202020, 0xe6e6e6}},
+    {"viridis",     0,    0,    {0, 0},    COLOUR_SEQUENTIAL,  6, {0x440154, 0x414487, 0x2a788e, 0x22a884, 0x7ad151, 0xfde725}},
+    {"inferno",     0,    0,    {0, 0},    COLOUR_SEQUENTIAL,  6, {0x0b0724, 0x4a0c6b, 0xa52c60, 0xed6925, 0xf7d13d, 0xfcffa4}},
+    {"heat",        0,    0,    {0, 0},    COLOUR_SEQUENTIAL,  6, {0x5a0a0e, 0xa01c0c, 0xd24e08, 0xf08a1c, 0xf8c552, 0xfff6c8}},
+    {"coolwarm",    0,    0,    {0, 0},    COLOUR_DIVERGING,   5, {0x3b4cc0, 0x86a4f0, 0xdddddd, 0xf0977a, 0xb40426}},
+    {"phase",       0.72, 0.12, {20, 380}, COLOUR_CYCLIC,      0, {0}},
+    {"isoluminant", 0.72, 0.12, {270, 0},  COLOUR_ISOLUMINANT, 0, {0}},
+    {"gray",        0,    0,    {0, 0},    COLOUR_SEQUENTIAL,  2, {0x202020, 0xe6e6e6}},
 };
 // clang-format on
 

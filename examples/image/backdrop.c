@@ -99,8 +99,8 @@ static void transform(float *row, size_t n, size_t stride, size_t *place, double
 static bool distances(const float *coverage, uint32_t width, uint32_t height, bool covered,
                       float *out) {
     size_t longest = width > height ? width : height;
-    size_t *place = malloc(longest * sizeof *place);
-    double *number = malloc((2 * longest + 1) * sizeof *number);
+    size_t *place = calloc(longest, sizeof *place);
+    double *number = calloc(2 * longest + 1, sizeof *number);
     for (size_t i = 0; place && number && i < (size_t)width * height; i++)
         out[i] = (coverage[i] >= 0.5f) == covered ? 0 : 1e12f;
     for (size_t x = 0; place && number && x < width; x++)

@@ -231,17 +231,21 @@ static reading read_values(const char *map_name, const char *flags) {
 
 /* As in Koehler's Fig. 7 (no illumination) and with our default illumination. */
 static void shading_leaves_values_readable(void **state) {
-    static const char *const maps[] = {"viridis", "inferno", "heat", "coolwarm"};
-    static const char *const light[] = {"--ambient 1 --diffuse 0 --specular 0", ""};
+    static const char *const cases[][2] = {{"viridis", "--ambient 1 --diffuse 0 --specular 0"},
+                                           {"inferno", "--ambient 1 --diffuse 0 --specular 0"},
+                                           {"heat", "--ambient 1 --diffuse 0 --specular 0"},
+                                           {"coolwarm", "--ambient 1 --diffuse 0 --specular 0"},
+                                           {"viridis", ""},
+                                           {"heat", ""}};
     (void)state;
-    for (int i = 0; i < 8; i++) {
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
         char flags[160];
-        snprintf(flags, sizeof flags, "%s --ao-affects-color luminance_preserving", light[i % 2]);
-        reading times = read_values(maps[i / 2], light[i % 2]),
-                kept = read_values(maps[i / 2], flags);
+        snprintf(flags, sizeof flags, "%s --ao-affects-color luminance_preserving", cases[i][1]);
+        reading times = read_values(cases[i][0], cases[i][1]);
+        reading kept = read_values(cases[i][0], flags);
         print_message("%-9s %s: error %.4f to %.4f, %.1f times less; cue %.3f to %.3f; lightness "
                       "changes by %.1f to %.1f\n",
-                      maps[i / 2], i % 2 ? "lit  " : "unlit", times.error, kept.error,
+                      cases[i][0], *cases[i][1] ? "unlit" : "lit  ", times.error, kept.error,
                       times.error / kept.error, times.cue, kept.cue, times.lightness,
                       kept.lightness);
         assert_true(times.error > 4 * kept.error);
@@ -336,9 +340,8 @@ static void the_chosen_way_shows_most_for_its_error(void **state) {
 static void hues_alone_survive_multiplication(void **state) {
     (void)state;
     reading r = read_values("isoluminant", "--ambient 1 --diffuse 0 --specular 0");
-    reading viridis = read_values("viridis", "--ambient 1 --diffuse 0 --specular 0");
     print_message("isoluminant, multiplied: error %.4f, cue %.3f\n", r.error, r.cue);
-    assert_true(r.error < viridis.error / 4 && r.cue > viridis.cue);
+    assert_true(r.error < 0.005 && r.cue > 0.2); /* viridis: 0.02 and 0.13 */
 }
 
 /* ---- legends and sheets ----------------------------------------------------------------- */
