@@ -11,8 +11,10 @@ export LC_ALL
 cd "$(dirname "$0")"
 
 # Shaders by module; a module's header is where its shared text is.
-MODULES="lines"
-lines_shaders="fullscreen import_depth export_depth cover lines lines_rim lines_halo level_zero level_up occlusion smooth shade resolve present"
+MODULES="lines vessel"
+lines_shaders="fullscreen import_depth export_depth cover lines lines_rim lines_halo level_zero level_one level_up occlusion smooth shade resolve present"
+vessel_shaders="vessel_trace vessel_shade"
+vessel_header="sdfvessel.h"
 lines_header="" # lineao.h's text stands in front of all
 
 work=$(mktemp -d)
@@ -132,7 +134,11 @@ make_shaders_header() {
     { make_shared lineao.h; strip <shaders/prologue.glsl; } >"$work/prologue"
     for module in $MODULES; do
         eval "header=\$${module}_header"
-        { make_shared $header; "$work/shader_text" settings "$module"; } >"$work/$module.prologue"
+        {
+            make_shared $header
+            "$work/shader_text" settings "$module"
+            [ ! -e "shaders/$module.glsl" ] || [ "$module" = lines ] || strip <"shaders/$module.glsl"
+        } >"$work/$module.prologue"
     done
     "$work/shader_text" levels | strip >"$work/levels"
     cat <<'END'

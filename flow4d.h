@@ -222,7 +222,7 @@ typedef struct flow4d_trace_settings {
 
 /* Lines in order of their seeds. Points lie on the times seed + k step, rising along the line. A
    line holds its seed, so it has one point where no step was possible, and none where the seed is
-   not inside. */
+   not inside. A host may thin the lines in place and lower the two counts. */
 typedef struct flow4d_lines {
     uint32_t line_count, point_count;
     uint32_t *offsets; /* line_count + 1: line i has points offsets[i] .. offsets[i + 1] - 1 */
@@ -234,7 +234,8 @@ typedef struct flow4d_lines {
     float *curvature;  /* point_count, 1/mm, of the circle through a point and its two neighbours,
                           0 at ends; NULL unless asked for */
     double step;       /* ms, that was taken */
-    lao_allocator allocator; /* private */
+    uint32_t line_room, point_room; /* private: what was allocated */
+    lao_allocator allocator;        /* private */
 } flow4d_lines;
 
 /* Integrates lines. Random seeds are uniform in the inside: a random voxel, a random place in it,
@@ -242,8 +243,9 @@ typedef struct flow4d_lines {
    line_count. A line ends where it would leave the inside (every point and every stage of a step is
    looked at), where the velocity is not finite or slower than stop_speed, and at the end of its
    span. Where both directions together exceed max_points, the longer one gives way.
-   Peak memory: twice the result and 14 MB. Fails with NULL_ARGUMENT, SETTING, EMPTY, COUNT, MEMORY,
-   CANCELLED and like flow4d_field_check. */
+   Peak memory: twice the result and 15 MB (one line's max_points times 28 bytes where that is
+   more). Fails with NULL_ARGUMENT, SETTING, EMPTY, COUNT, MEMORY, CANCELLED and like
+   flow4d_field_check. */
 FLOW4D_API lao_result flow4d_trace(const flow4d_host *host, const flow4d_field *field,
                                    const flow4d_trace_settings *settings, flow4d_lines *lines);
 FLOW4D_API void flow4d_lines_free(flow4d_lines *lines);
@@ -440,10 +442,14 @@ static lao_result flow4d__work(const flow4d_host *host, const char *name, size_t
     return LAO_OK;
 }
 
+static int flow4d__number(double value) {
+    return value - value == 0.0;
+}
+
 static int flow4d__finite(const double *values, size_t count) {
     size_t i;
     for (i = 0; i < count; i++) {
-        if (!(values[i] - values[i] == 0.0)) {
+        if (!flow4d__number(values[i])) {
             return 0;
         }
     }
@@ -490,18 +496,18 @@ static double flow4d__shortest_edge(const double m[12]) {
    count as such. */
 static int flow4d__invert(const double m[12], double inverse[12]) {
     double d, scale;
-    int i, j;
+    size_t i, j;
     if (!flow4d__finite(m, 12)) {
         return -1;
     }
     d = flow4d__determinant(m);
     scale = flow4d__edge(m, 0) * flow4d__edge(m, 1) * flow4d__edge(m, 2);
-    if (!flow4d__finite(&scale, 1) || !(fabs(d) > 1e-12 * scale)) {
+    if (!flow4d__number(scale) || !(fabs(d) > 1e-12 * scale)) {
         return -1;
     }
     for (i = 0; i < 3; i++) {
         for (j = 0; j < 3; j++) {
-            int a = (j + 1) % 3, b = (j + 2) % 3, c = (i + 1) % 3, e = (i + 2) % 3;
+            size_t a = (j + 1) % 3, b = (j + 2) % 3, c = (i + 1) % 3, e = (i + 2) % 3;
             inverse[4 * i + j] = (m[4 * a + c] * m[4 * b + e] - m[4 * a + e] * m[4 * b + c]) / d;
         }
     }
@@ -544,7 +550,7 @@ static lao_result flow4d__domain_check(const flow4d_host *host, const flow4d_fie
     size_t frames = field->velocity_at ? 1 : field->frame_count;
     lao_result result = flow4d__lattice_check(host, field->size, frames, 3 * sizeof(float),
                                               field->to_world, from_world);
-    if (result == LAO_OK && !(field->period >= 0.0 && flow4d__finite(&field->period, 1) &&
+    if (result == LAO_OK && !(field->period >= 0.0 && flow4d__number(field->period) &&
                               (field->period > 0.0 || frames < 2))) {
         char text[64];
         snprintf(text, sizeof text, "%g ms for %lu frames", field->period, (unsigned long)frames);
@@ -665,7 +671,7 @@ void flow4d_sample(const flow4d_sampler *sampler, const double position[3], doub
                    double velocity[3]) {
     double index[3];
     flow4d__apply(sampler->from_world, position, index);
-    if (!flow4d__finite(index, 3) || !flow4d__finite(&time, 1)) {
+    if (!flow4d__finite(index, 3) || !flow4d__number(time)) {
         velocity[0] = velocity[1] = velocity[2] =
             time - time + (index[0] - index[0]) + (index[1] - index[1]) + (index[2] - index[2]);
         return;
@@ -766,7 +772,7 @@ void flow4d_vorticity(const flow4d_sampler *sampler, const double position[3], d
     double index[3], slope[3][3], d[3][3];
     int i, j;
     flow4d__apply(g, position, index);
-    if (!flow4d__finite(index, 3) || !flow4d__finite(&time, 1)) {
+    if (!flow4d__finite(index, 3) || !flow4d__number(time)) {
         flow4d_sample(sampler, position, time, vorticity); /* NaN */
         return;
     }
@@ -817,7 +823,7 @@ static double flow4d__peak(const flow4d_sampler *sampler, const size_t voxel[3])
             v[2] = (double)w[2];
         }
         speed = flow4d__length(v);
-        if (speed > peak && flow4d__finite(&speed, 1)) {
+        if (speed > peak && flow4d__number(speed)) {
             peak = speed;
         }
     }
@@ -859,7 +865,8 @@ static void flow4d__resample_slice(void *arg, size_t slice) {
     const flow4d__resampling *r = (const flow4d__resampling *)arg;
     const uint32_t *size = r->target->size;
     size_t voxel = slice * size[0] * size[1];
-    double time = r->target->period * (double)(slice / size[2]) / r->target->frame_count;
+    size_t frame = slice / size[2];
+    double time = r->target->period * (double)frame / r->target->frame_count;
     uint32_t x, y;
     for (y = 0; y < size[1]; y++) {
         for (x = 0; x < size[0]; x++, voxel++) {
@@ -1081,7 +1088,7 @@ int flow4d_step(const flow4d_sampler *sampler, flow4d_method method, flow4d_mask
     t.tolerance = tolerance;
     t.frozen = 0;
     t.frozen_time = 0.0;
-    if (!flow4d__finite(&end, 1) || flow4d__velocity(&t, position, time, v) != 0) {
+    if (!flow4d__number(end) || flow4d__velocity(&t, position, time, v) != 0) {
         return -1;
     }
     return flow4d__advance(&t, time, step, position, v);
@@ -1144,7 +1151,8 @@ static void flow4d__rows_pick(const flow4d__rows *rows, const flow4d_field *fiel
     }
     index[0] = (double)x;
     index[1] = (double)(row % field->size[1]);
-    index[2] = (double)(row / field->size[1]);
+    row /= field->size[1];
+    index[2] = (double)row;
 }
 
 /* Number `use` of a line, in [0, 1), 53 bits. */
@@ -1286,7 +1294,7 @@ static void flow4d__put(const flow4d__trace *trace, size_t at, const double x[3]
         flow4d_vorticity(&trace->tracer.sampler, x,
                          trace->tracer.frozen ? trace->tracer.frozen_time : time, curl);
         size = flow4d__length(curl);
-        s->vorticity[at] = flow4d__finite(&size, 1) ? (float)size : 0.0f;
+        s->vorticity[at] = flow4d__number(size) ? (float)size : 0.0f;
     }
 }
 
@@ -1503,8 +1511,8 @@ static lao_result flow4d__lines_make(const flow4d_host *host, uint32_t attribute
     memset(lines, 0, sizeof *lines);
     memset(view, 0, sizeof *view);
     lines->allocator = *a;
-    lines->line_count = line_count;
-    lines->point_count = point_count;
+    lines->line_count = lines->line_room = line_count;
+    lines->point_count = lines->point_room = point_count;
     lines->offsets = (uint32_t *)flow4d__new(a, (size_t)line_count + 1, sizeof(uint32_t));
     lines->points = view->points = (float *)flow4d__new(a, n, 3 * size);
     lines->times = view->times = (float *)flow4d__new(a, n, size);
@@ -1644,8 +1652,8 @@ void flow4d_lines_free(flow4d_lines *lines) {
     if (!lines || !lines->allocator.release) {
         return;
     }
-    n = lines->point_count;
-    flow4d__delete(&lines->allocator, lines->offsets, (size_t)lines->line_count + 1,
+    n = lines->point_room;
+    flow4d__delete(&lines->allocator, lines->offsets, (size_t)lines->line_room + 1,
                    sizeof(uint32_t));
     flow4d__delete(&lines->allocator, lines->points, n, 3 * sizeof(float));
     flow4d__delete(&lines->allocator, lines->times, n, sizeof(float));
@@ -1953,7 +1961,7 @@ static uint32_t flow4d__march_vertex(flow4d__march *m, size_t x, size_t y, size_
         double b = flow4d__march_value(m, x + (axis == 0), y + (axis == 1), z + (axis == 2));
         double t = (m->iso - a) / (b - a), index[3], p[3];
         float *vertex = m->vertices + 3 * m->vertex_count;
-        t = flow4d__finite(&t, 1) ? fmin(fmax(t, 1.0 / 1024), 1023.0 / 1024) : 0.5;
+        t = flow4d__number(t) ? fmin(fmax(t, 1.0 / 1024), 1023.0 / 1024) : 0.5;
         index[0] = (double)x - 1.0;
         index[1] = (double)y - 1.0;
         index[2] = (double)z - 1.0;
@@ -2162,7 +2170,7 @@ lao_result flow4d_surface_make(const flow4d_host *host, const flow4d_volume *vol
     if (result != LAO_OK) {
         return result;
     }
-    if (!flow4d__finite(&iso, 1)) {
+    if (!flow4d__number(iso)) {
         return flow4d__fail(&h, FLOW4D_LOG_ISO, "flow4d_surface_make");
     }
     if (smoothing > 100) {

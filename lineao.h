@@ -175,6 +175,7 @@ typedef enum lao_format {
     LAO_FORMAT_RGBA16F,
     LAO_FORMAT_RGBA32F,
     LAO_FORMAT_R32F,
+    LAO_FORMAT_R32UI, /* one word of bits; cleared to 0, never blended */
     LAO_FORMAT_D32F,
     LAO_FORMAT_HOST, /* whatever the imported image has */
     LAO_FORMAT_COUNT
@@ -195,9 +196,9 @@ typedef enum lao_size {
 /* How lao_read turns texels into numbers. */
 typedef enum lao_encoding {
     LAO_ENCODING_PLAIN,
-    LAO_ENCODING_DEPTH24, /* RGBA8: lao_depth_pack; channels depth, validity */
-    LAO_ENCODING_AXIAL16, /* RGBA8: lao_axial_pack; two channels in [-1, 1] */
-    LAO_ENCODING_SIGNED8  /* RGBA8: 2 v - 1; three channels in [-1, 1] */
+    LAO_ENCODING_LEVEL, /* R32UI: lao_level_pack; three channels: the direction's two numbers by the
+                           setting `align` of the set that wrote it, depth */
+    LAO_ENCODING_SIGNED8 /* RGBA8: 2 v - 1; three channels in [-1, 1] */
 } lao_encoding;
 
 enum {
@@ -247,7 +248,8 @@ typedef enum lao_load {
 typedef struct lao_reference {
     const char *image; /* NULL ends the list; "#name" is a buffer (lao_buffer_row) */
     lao_level level;
-    uint32_t level_index; /* LAO_LEVEL_INDEX; past the last level means the last */
+    uint32_t level_index; /* LAO_LEVEL_INDEX: past the last level means the last; or where
+                             LAO_REPEAT_LEVELS_UP starts */
     lao_phase phase;
     lao_load load; /* writes only */
 } lao_reference;
@@ -261,7 +263,7 @@ typedef enum lao_pass_kind {
 } lao_pass_kind;
 typedef enum lao_repeat {
     LAO_REPEAT_NONE,
-    LAO_REPEAT_LEVELS_UP,   /* level 1 .. last of the first written image */
+    LAO_REPEAT_LEVELS_UP,   /* the levels above writes[0].level_index .. last of that image */
     LAO_REPEAT_LEVELS_DOWN, /* last - 1 .. 0 */
     LAO_REPEAT_COUNT,       /* as often as the setting `repeat_setting` says */
     LAO_REPEAT_WITH_LAST    /* in every turn of the row before that is not WITH_LAST itself, behind
@@ -1374,38 +1376,6 @@ LAO_FN lao_uint lao_sample_count(lao_uint samples, lao_uint level) {
 }
 
 /* ---- texels */
-/* Depth in [0, 1] as 24 bits in the first three channels, validity in the fourth. */
-LAO_FN lao_v4 lao_depth_pack(float depth, float valid) {
-    LAO_EXACT float q = lao_floor(lao_clamp01(depth) * 16777215.0f + 0.5f);
-    lao_uint n = LAO_U(lao_min(q, 16777215.0f));
-    LAO_EXACT float r = LAO_F(n >> 16u) / 255.0f;
-    LAO_EXACT float g = LAO_F((n >> 8u) & 255u) / 255.0f;
-    LAO_EXACT float b = LAO_F(n & 255u) / 255.0f;
-    return lao_v4_make(r, g, b, valid);
-}
-LAO_FN float lao_depth_unpack(lao_v4 texel) {
-    LAO_EXACT float d =
-        texel.x * 0.996093809f + texel.y * 0.00389099144f + texel.z * 1.51991853e-5f;
-    return d;
-}
-/* Two numbers in [-1, 1] with 16 bits each; 0 comes back as less than 1e-6. */
-LAO_FN lao_v4 lao_axial_pack(float c, float s) {
-    lao_uint i =
-        LAO_U(lao_floor((lao_min(lao_max(c, -1.0f), 1.0f) * 0.5f + 0.5f) * 65534.0f + 0.5f));
-    lao_uint j =
-        LAO_U(lao_floor((lao_min(lao_max(s, -1.0f), 1.0f) * 0.5f + 0.5f) * 65534.0f + 0.5f));
-    LAO_EXACT float x = LAO_F(i >> 8u) / 255.0f;
-    LAO_EXACT float y = LAO_F(i & 255u) / 255.0f;
-    LAO_EXACT float z = LAO_F(j >> 8u) / 255.0f;
-    LAO_EXACT float w = LAO_F(j & 255u) / 255.0f;
-    return lao_v4_make(x, y, z, w);
-}
-LAO_FN lao_v2 lao_axial_unpack(lao_v4 texel) {
-    LAO_EXACT float c = (texel.x * 65280.0f + texel.y * 255.0f - 32767.0f) * 3.05185095e-5f;
-    LAO_EXACT float s = (texel.z * 65280.0f + texel.w * 255.0f - 32767.0f) * 3.05185095e-5f;
-    return lao_v2_make(c, s);
-}
-
 /* Cosine and sine of the double angle to the paper's alpha = |t.x| (Eq. 10) and its validity. */
 LAO_FN lao_v2 lao_axial_alpha(lao_v2 axial) {
     LAO_EXACT float length2 = lao_v2_dot(axial, axial);
@@ -1445,6 +1415,57 @@ LAO_FN lao_v3 lao_signed_unpack(lao_v4 texel) {
     LAO_EXACT float y = texel.y * 2.0f - 1.0f;
     LAO_EXACT float z = texel.z * 2.0f - 1.0f;
     return lao_v3_make(x, y, z);
+}
+
+#define LAO_ALIGN_ROTATION 0
+#define LAO_ALIGN_PAPER 1
+#define LAO_ALIGN_NONE 2
+/* What a sample of the occlusion reads of a level is one word: nearness in bits 0 - 19 (depth 1 is
+   1, depth 0 is LAO_LEVEL_NEAREST; 0: nothing is covered), in bit 20 whether a direction is known,
+   the direction in bits 21 - 31: 1/2048 of a half turn, so that differences of words wrap as
+   directions do; in the paper's alignment 1/2047 of alpha. */
+#define LAO_LEVEL_NEAREST 1048575u
+#define LAO_LEVEL_KNOWN 1048576u
+#define LAO_LEVEL_TURN 4292870144u /* the bits of the direction */
+#define LAO_LEVEL_STEPS 1048574.0f /* between depth 0 and 1 */
+/* A covered texel; direction: cosine and sine of the double angle, or alpha and its validity. */
+LAO_FN lao_uint lao_level_pack(float depth, lao_v2 direction, lao_int align) {
+    LAO_EXACT float q = lao_floor(lao_clamp01(depth) * LAO_LEVEL_STEPS + 0.5f);
+    lao_uint word = LAO_LEVEL_NEAREST - LAO_U(q > 0.0f ? lao_min(q, LAO_LEVEL_STEPS) : 0.0f);
+    if (align == LAO_ALIGN_ROTATION && lao_v2_dot(direction, direction) > 0.25f) {
+        LAO_EXACT float turn = lao_floor(lao_atan2(direction.y, direction.x) * 325.949323f + 0.5f);
+        word = word | LAO_LEVEL_KNOWN | (LAO_U(LAO_I(turn)) << 21u);
+    }
+    if (align == LAO_ALIGN_PAPER && direction.y > 0.5f) {
+        LAO_EXACT float alpha = lao_floor(lao_clamp01(direction.x) * 2047.0f + 0.5f);
+        word = word | LAO_LEVEL_KNOWN | (LAO_U(alpha) << 21u);
+    }
+    return word;
+}
+LAO_FN bool lao_level_known(lao_uint word) {
+    return (word & LAO_LEVEL_KNOWN) != 0u;
+}
+/* In [0, 1]; 1 where nothing is covered. */
+LAO_FN float lao_level_depth(lao_uint word) {
+    LAO_EXACT float d =
+        LAO_F(LAO_I(LAO_LEVEL_NEAREST - (word & LAO_LEVEL_NEAREST))) / LAO_LEVEL_STEPS;
+    return lao_min(d, 1.0f);
+}
+/* The two numbers of lao_level_pack; (0, 0) where no direction is known. */
+LAO_FN lao_v2 lao_level_direction(lao_uint word, lao_int align) {
+    if (!lao_level_known(word)) {
+        return lao_v2_make(0.0f, 0.0f);
+    }
+    LAO_EXACT float code = LAO_F(LAO_I(word >> 21u));
+    if (align == LAO_ALIGN_PAPER) {
+        return lao_v2_make(code / 2047.0f, 1.0f);
+    }
+    LAO_EXACT float turn = code * 0.00048828125f;
+    return lao_v2_make(lao_cos_turns(turn), lao_sin_turns(turn));
+}
+/* How much nearer than `centre` a texel is, in steps of depth. */
+LAO_FN float lao_level_nearer(lao_uint centre, lao_uint word) {
+    return LAO_F(LAO_I(word & LAO_LEVEL_NEAREST) - LAO_I(centre & LAO_LEVEL_NEAREST));
 }
 
 /* ---- pyramid (METHODS 1.10) */
@@ -1498,6 +1519,27 @@ LAO_FN lao_v4 lao_level_sum_mean(lao_level_sum sum) {
     return lao_v4_make(x, y, sum.covered, d);
 }
 
+/* A texel of level 0 as a child of level 1. */
+LAO_FN lao_v4 lao_level_child(lao_uint word, lao_int align) {
+    lao_v2 direction = lao_level_direction(word, align);
+    LAO_EXACT float covered = (word & LAO_LEVEL_NEAREST) != 0u ? 1.0f : 0.0f;
+    return lao_v4_make(direction.x, direction.y, covered, lao_level_depth(word));
+}
+/* What a sample reads of a mean. */
+LAO_FN lao_uint lao_level_word(lao_v4 mean, lao_int align) {
+    lao_v2 direction = lao_v2_make(mean.x, mean.y);
+    if (!(mean.z > 0.0f)) {
+        return 0u;
+    }
+    if (align == LAO_ALIGN_ROTATION) {
+        direction = lao_axial_unit(direction);
+    }
+    if (align == LAO_ALIGN_PAPER) {
+        direction = lao_alpha_mean(direction);
+    }
+    return lao_level_pack(mean.w, direction, align);
+}
+
 /* ---- camera */
 /* View depth (mm along the view axis) to the depth that occlusion compares: 0..1 over the scene
  * sphere (METHODS 1.3). */
@@ -1515,6 +1557,21 @@ LAO_FN lao_v2 lao_pixel_slope(lao_v4 ray, float px, float py) {
     LAO_EXACT float x = ray.x * px + ray.z;
     LAO_EXACT float y = ray.y * py + ray.w;
     return lao_v2_make(x, y);
+}
+/* The view ray through a pixel centre in the world, from the eye (orthographic: from the eye's
+   plane): a point and a unit vector. */
+LAO_FN lao_v3 lao_ray_origin(lao_m4 world, lao_v2 slope, float orthographic) {
+    if (orthographic > 0.5f) {
+        return lao_transform(world, lao_v3_make(slope.x, slope.y, 0.0f));
+    }
+    return lao_v3_make(world.w.x, world.w.y, world.w.z);
+}
+LAO_FN lao_v3 lao_ray_direction(lao_m4 world, lao_v2 slope, float orthographic) {
+    lao_v2 s = orthographic > 0.5f ? lao_v2_make(0.0f, 0.0f) : slope;
+    LAO_EXACT float x = world.x.x * s.x + world.y.x * s.y - world.z.x;
+    LAO_EXACT float y = world.x.y * s.x + world.y.y * s.y - world.z.y;
+    LAO_EXACT float z = world.x.z * s.x + world.y.z * s.y - world.z.z;
+    return lao_v3_unit(lao_v3_make(x, y, z), lao_v3_make(0.0f, 0.0f, -1.0f));
 }
 /* Unit vector from the surface at that pixel towards the eye: the direction of the head light. */
 LAO_FN lao_v3 lao_towards_eye(lao_v2 slope, float orthographic) {
@@ -1793,9 +1850,6 @@ LAO_FN lao_v3 lao_desaturate(lao_v3 color) {
 }
 
 /* ---- occlusion (METHODS 1.5 - 1.9, 2.3 - 2.5) */
-#define LAO_ALIGN_ROTATION 0
-#define LAO_ALIGN_PAPER 1
-#define LAO_ALIGN_NONE 2
 #define LAO_LIGHT_PAPER 0
 #define LAO_LIGHT_AUTHOR 1
 #define LAO_PYRAMID_BOX 0
@@ -1832,10 +1886,12 @@ LAO_FN float lao_depth_reach(float density, lao_uint level, lao_uint levels) {
     LAO_EXACT float r = density * t * t;
     return r;
 }
-/* Eq. 5: 1 below delta 0, 0 beyond reach. slope: lao_depth_weight_slope. */
-LAO_FN float lao_depth_weight(float difference, float threshold, float slope) {
-    LAO_EXACT float t = (difference - threshold) * slope;
-    LAO_EXACT float r = 1.0f - lao_hermite(t);
+/* Eq. 5: 1 below delta 0, 0 beyond reach; `beyond` delta 0. slope: lao_depth_weight_slope. It is
+   1 - h(t) with t stretched by the cube root of 2, which takes h's factors away. */
+LAO_FN float lao_depth_weight(float beyond, float slope) {
+    LAO_EXACT float steep = slope * 1.25992095f;
+    LAO_EXACT float t = lao_min(lao_max(beyond * steep, 0.0f), 1.25992095f);
+    LAO_EXACT float r = 1.0f + t * t * (t - 1.88988161f);
     return r;
 }
 /* 1 / (reach - delta 0); steep enough for a step where reach does not exceed delta 0. */
@@ -1844,8 +1900,8 @@ LAO_FN float lao_depth_weight_slope(float reach, float threshold) {
     LAO_EXACT float slope = 1.0f / width;
     return slope;
 }
-/* Eq. 8 and 9 with the receiver's cosine: n_omega = n.omega >= 0, r_omega = max(r.omega, 0),
- * diffuse = I k_d n.l */
+/* Eq. 8 and 9 with the receiver's cosine: n_omega = n.omega >= 0, r_omega = r.omega (below 0 counts
+ * as 0), diffuse = I k_d n.l */
 LAO_FN float lao_light_weight(float diffuse, float n_omega, float specular, float r_omega,
                               lao_int exponent) {
     LAO_EXACT float l = diffuse * n_omega + specular * lao_power(r_omega, exponent);
@@ -1867,24 +1923,25 @@ LAO_FN float lao_light_weight_author(lao_v3 omega, float n_omega, lao_v3 occlude
     LAO_EXACT float g = lao_max(1.5f - n_omega * (specular + diffuse), 0.0f);
     return g;
 }
-/* Difference of direction x in [0, 1], 1 - |t.t'|, from axial unit vectors; -1 when either is (0,
- * 0), no direction. */
-LAO_FN float lao_axial_difference(lao_v2 a, lao_v2 b) {
-    LAO_EXACT float c = a.x * b.x + a.y * b.y;
-    LAO_EXACT float x = lao_max(1.0f - lao_sqrt(lao_max(0.5f + 0.5f * c, 0.0f)), 0.0f);
-    LAO_EXACT float known = lao_min(a.x * a.x + a.y * a.y, b.x * b.x + b.y * b.y);
-    return known > 0.25f ? x : -1.0f;
+/* Difference of direction x in [0, 1], 1 - |t.t'|, of two words with directions; absolute error
+   below 1e-5 besides that of the steps. */
+LAO_FN float lao_axial_difference(lao_uint a, lao_uint b) {
+    LAO_EXACT float t = LAO_F(LAO_I((a & LAO_LEVEL_TURN) - (b & LAO_LEVEL_TURN))) * 2.40889417e-10f;
+    LAO_EXACT float s = t * t;
+    LAO_EXACT float x = s * (4.60955151f + s * (s - 3.52867133f));
+    return x;
 }
-/* Eq. 10 as printed: x = ||t.x| - |t'.x||, from (alpha, validity); -1 when either is invalid. */
-LAO_FN float lao_alpha_difference(lao_v2 a, lao_v2 b) {
-    LAO_EXACT float x = lao_abs(a.x - b.x);
-    return lao_min(a.y, b.y) > 0.5f ? x : -1.0f;
+/* Eq. 10 as printed: x = ||t.x| - |t'.x|| */
+LAO_FN float lao_alpha_difference(lao_uint a, lao_uint b) {
+    LAO_EXACT float x = lao_abs(LAO_F(LAO_I(a >> 21u) - LAO_I(b >> 21u))) / 2047.0f;
+    return x;
 }
-/* Eq. 11; a negative difference means unknown: 1 */
+/* Eq. 11 for a difference in [0, 1]: I h(x), at most 1, at least A0 */
 LAO_FN float lao_align_weight(float difference, float intensity, float least) {
-    LAO_EXACT float g = intensity * lao_hermite(difference);
-    LAO_EXACT float bounded = lao_max(lao_min(g, 1.0f), least);
-    return difference < 0.0f ? 1.0f : bounded;
+    LAO_EXACT float triple = 3.0f * intensity;
+    LAO_EXACT float twice = 2.0f * intensity;
+    LAO_EXACT float g = difference * difference * (triple - twice * difference);
+    return lao_max(lao_min(g, 1.0f), least);
 }
 
 /* What a pixel needs for all samples of one level: the mirror at N and the radius folded into three
@@ -1893,6 +1950,7 @@ LAO_FN float lao_align_weight(float difference, float intensity, float least) {
 struct lao_sampler {
     lao_v3 x, y, n, r; /* rows: offset in texels of the level, normal, reflected light */
     lao_v2 centre;     /* pixel centre in texels of the level */
+    lao_v2 own;        /* the texel that it lies in */
 };
 #ifndef LAO_GLSL
 typedef struct lao_sampler lao_sampler;
@@ -1912,33 +1970,40 @@ LAO_FN lao_sampler lao_sampler_make(lao_v3 noise, lao_v3 normal, lao_v3 reflecte
     s.n = lao_mirror(normal, noise);
     s.r = lao_mirror(reflected, noise);
     s.centre = lao_v2_make(px * texel, py * texel);
+    s.own = lao_v2_make(lao_floor(s.centre.x), lao_floor(s.centre.y));
     return s;
 }
-/* One sample: texel (x, y) of the level, cosines to normal and reflection, use = 0 where it is not
-   counted (outside the image or in the centre's own texel). */
+/* v, its sign turned round where `side` is the sign bit. */
+LAO_FN float lao_turned(float v, lao_uint side) {
+    return lao_bits_float(lao_float_bits(v) ^ side);
+}
+/* One sample: texel (x, y) of the level and its centre in [0, 1], cosines to normal and reflection,
+   the side that omega was turned to, whether it counts (not outside the image, not the centre's own
+   texel). inverse: 1 / width, 1 / height of the level. */
 struct lao_tap {
-    float x, y, n_omega, r_omega, flip, use;
+    lao_v2 at;
+    float x, y, n_omega, r_omega;
+    lao_uint side;
+    bool counts;
 };
 #ifndef LAO_GLSL
 typedef struct lao_tap lao_tap;
 #endif
-LAO_FN lao_tap lao_tap_make(lao_sampler s, lao_v3 direction, lao_v2 size) {
+LAO_FN lao_tap lao_tap_make(lao_sampler s, lao_v3 direction, lao_v2 inverse) {
     lao_tap tap;
     LAO_EXACT float c = lao_v3_dot(direction, s.n);
-    LAO_EXACT float flip = c < 0.0f ? -1.0f : 1.0f;
-    LAO_EXACT float x = lao_floor(s.centre.x + flip * lao_v3_dot(direction, s.x));
-    LAO_EXACT float y = lao_floor(s.centre.y + flip * lao_v3_dot(direction, s.y));
-    tap.flip = flip;
+    lao_uint side = lao_float_bits(c) & 2147483648u;
+    LAO_EXACT float x = lao_floor(s.centre.x + lao_turned(lao_v3_dot(direction, s.x), side));
+    LAO_EXACT float y = lao_floor(s.centre.y + lao_turned(lao_v3_dot(direction, s.y), side));
+    LAO_EXACT float u = (x + 0.5f) * inverse.x;
+    LAO_EXACT float v = (y + 0.5f) * inverse.y;
+    /* both in [0, 1): no bit is set in either floor */
+    bool inside = (lao_float_bits(lao_floor(u)) | lao_float_bits(lao_floor(v))) == 0u;
+    tap.counts = inside && (x != s.own.x || y != s.own.y);
+    tap.side = side;
     tap.n_omega = lao_abs(c);
-    tap.r_omega = lao_max(flip * lao_v3_dot(direction, s.r), 0.0f);
-    LAO_EXACT float apart = lao_abs(x - lao_floor(s.centre.x)) + lao_abs(y - lao_floor(s.centre.y));
-    LAO_EXACT float middle_x = 0.5f * size.x - 0.5f;
-    LAO_EXACT float middle_y = 0.5f * size.y - 0.5f;
-    LAO_EXACT float inside_x = middle_x - lao_abs(x - middle_x);
-    LAO_EXACT float inside_y = middle_y - lao_abs(y - middle_y);
-    LAO_EXACT float use =
-        lao_min(lao_min(inside_x, inside_y) + 1.0f, apart); /* at least 1 when it counts */
-    tap.use = use > 0.5f ? 1.0f : 0.0f;
+    tap.r_omega = lao_turned(lao_v3_dot(direction, s.r), side);
+    tap.at = lao_v2_make(u, v);
     tap.x = x;
     tap.y = y;
     return tap;
@@ -2046,6 +2111,9 @@ extern "C" {
 #define LAO__KEEP(image) {image, LAO_LEVEL_SAME, 0, LAO_PHASE_THIS, LAO_LOAD_KEEP}
 #define LAO__WRITE(image) {image, LAO_LEVEL_SAME, 0, LAO_PHASE_THIS, LAO_LOAD_DISCARD}
 #define LAO__OTHER(image) {image, LAO_LEVEL_SAME, 0, LAO_PHASE_OTHER, LAO_LOAD_DISCARD}
+#define LAO__WRITE_LEVEL(image, level) {image, LAO_LEVEL_INDEX, level, LAO_PHASE_THIS, LAO_LOAD_DISCARD}
+#define LAO__WRITE_ABOVE(image, level) {image, LAO_LEVEL_SAME, level, LAO_PHASE_THIS, LAO_LOAD_DISCARD} /* LAO_REPEAT_LEVELS_UP */
+#define LAO__UNKNOWN 0.501960784f /* no tangent: 128 of 255, about 0 */
 #define LAO__ALWAYS {{NULL, 0, 0}}
 #define LAO__ANY {NULL, 0, 0}
 
@@ -2058,9 +2126,8 @@ static const lao_image_row lao__images[] = {
     {"depth",         LAO_FORMAT_R32F,    LAO_SIZE_FULL, 0, 0, NULL,     0,                LAO_ENCODING_PLAIN,   {1, 1, 1, 1}, LAO__ANY,                               {"depth.Z", NULL, NULL, NULL}},
     {"zbuffer",       LAO_FORMAT_D32F,    LAO_SIZE_FULL, 0, 0, NULL,     0,                LAO_ENCODING_PLAIN,   {1, 0, 0, 0}, LAO__ANY,                               {NULL, NULL, NULL, NULL}},
     {"tensor",        LAO_FORMAT_RGBA32F, LAO_SIZE_FULL, 0, 0, "levels", 0,                LAO_ENCODING_PLAIN,   {0, 0, 0, 0}, {"occlusion", '=', 1},                  {NULL, NULL, NULL, NULL}},
-    {"level_depth",   LAO_FORMAT_RGBA8,   LAO_SIZE_FULL, 0, 0, "levels", 0,                LAO_ENCODING_DEPTH24, {0, 0, 0, 0}, {"occlusion", '=', 1},                  {"axial%d.D", NULL, NULL, NULL}},
-    {"level_axial",   LAO_FORMAT_RGBA8,   LAO_SIZE_FULL, 0, 0, "levels", 0,                LAO_ENCODING_AXIAL16, {0, 0, 0, 0}, {"align", '!', LAO_ALIGN_NONE},         {"axial%d.C", "axial%d.S", NULL, NULL}},
-    {"level_tangent", LAO_FORMAT_RGBA8,   LAO_SIZE_FULL, 0, 0, "levels", 0,                LAO_ENCODING_SIGNED8, {0, 0, 0, 0}, {"light", '=', LAO_LIGHT_AUTHOR},       {NULL, NULL, NULL, NULL}},
+    {"level",         LAO_FORMAT_R32UI,   LAO_SIZE_FULL, 0, 0, "levels", 0,                LAO_ENCODING_LEVEL,   {0, 0, 0, 0}, {"occlusion", '=', 1},                  {"axial%d.C", "axial%d.S", "axial%d.D", NULL}},
+    {"level_tangent", LAO_FORMAT_RGBA8,   LAO_SIZE_FULL, 0, 0, "levels", 0,                LAO_ENCODING_SIGNED8, {LAO__UNKNOWN, LAO__UNKNOWN, LAO__UNKNOWN, LAO__UNKNOWN}, {"light", '=', LAO_LIGHT_AUTHOR},       {NULL, NULL, NULL, NULL}},
     {"ao",            LAO_FORMAT_R32F,    LAO_SIZE_FULL, 0, 0, NULL,     0,                LAO_ENCODING_PLAIN,   {0, 0, 0, 0}, {"occlusion", '=', 1},                  {"ao.V", NULL, NULL, NULL}},
     {"shaded",        LAO_FORMAT_RGBA8,   LAO_SIZE_FULL, 0, 0, NULL,     0,                LAO_ENCODING_PLAIN,   {0, 0, 0, 0}, LAO__ANY,                               {NULL, NULL, NULL, NULL}},
     {"out",           LAO_FORMAT_RGBA8,   LAO_SIZE_VIEW, 0, 0, NULL,     0,                LAO_ENCODING_PLAIN,   {0, 0, 0, 0}, LAO__ANY,                               {"out.R", "out.G", "out.B", "out.A"}}
@@ -2083,16 +2150,20 @@ static const lao_pass_row lao__passes[] = {
     /* the host's G-buffer instead of our lines: its mask as depth, for the passes that skip background by it */
     {"cover", LAO_PASS_FULLSCREEN, "cover", 0, LAO_STAGE_DRAW, LAO_SCOPE_PER_SET, LAO_REPEAT_NONE, NULL, LAO_BLEND_NONE, LAO_DEPTH_ALWAYS, LAO_CULL_NONE, {{"@color", '>', 0}},
      {LAO__CLEAR("zbuffer")}, {LAO__READ("color")}},
-    /* level 0 of what a sample reads, and the sums that coarser levels are made of */
-    {"level_zero", LAO_PASS_FULLSCREEN, "level_zero", 0, LAO_STAGE_SHADE, LAO_SCOPE_PER_SET, LAO_REPEAT_NONE, NULL, LAO_BLEND_NONE, LAO_DEPTH_NONE, LAO_CULL_NONE, {{"occlusion", '=', 1}},
-     {LAO__WRITE("tensor"), LAO__WRITE("level_depth"), LAO__WRITE("level_axial"), LAO__WRITE("level_tangent")},
+    /* level 0 of what a sample reads */
+    {"level_zero", LAO_PASS_FULLSCREEN, "level_zero", 0, LAO_STAGE_SHADE, LAO_SCOPE_PER_SET, LAO_REPEAT_NONE, NULL, LAO_BLEND_NONE, LAO_DEPTH_COVERED, LAO_CULL_NONE, {{"occlusion", '=', 1}},
+     {LAO__CLEAR("level"), LAO__CLEAR("level_tangent"), LAO__KEEP("zbuffer")},
      {LAO__READ("color"), LAO__READ("tangent"), LAO__READ("depth")}},
+    /* coarser levels, and from level 1 on the sums that the next one is made of */
+    {"level_one", LAO_PASS_FULLSCREEN, "level_one", 0, LAO_STAGE_SHADE, LAO_SCOPE_PER_SET, LAO_REPEAT_NONE, NULL, LAO_BLEND_NONE, LAO_DEPTH_NONE, LAO_CULL_NONE, {{"occlusion", '=', 1}, {"levels", '>', 1}},
+     {LAO__WRITE_LEVEL("tensor", 1), LAO__WRITE_LEVEL("level", 1), LAO__WRITE_LEVEL("level_tangent", 1)},
+     {LAO__READ_LEVEL("level", 0), LAO__READ_LEVEL("level_tangent", 0)}},
     {"level_up", LAO_PASS_FULLSCREEN, "level_up", 0, LAO_STAGE_SHADE, LAO_SCOPE_PER_SET, LAO_REPEAT_LEVELS_UP, NULL, LAO_BLEND_NONE, LAO_DEPTH_NONE, LAO_CULL_NONE, {{"occlusion", '=', 1}},
-     {LAO__WRITE("tensor"), LAO__WRITE("level_depth"), LAO__WRITE("level_axial"), LAO__WRITE("level_tangent")},
+     {LAO__WRITE_ABOVE("tensor", 1), LAO__WRITE("level"), LAO__WRITE("level_tangent")},
      {LAO__READ_FINER("tensor"), LAO__READ_FINER("level_tangent")}},
     {"occlusion", LAO_PASS_FULLSCREEN, "occlusion", 0, LAO_STAGE_SHADE, LAO_SCOPE_PER_SET, LAO_REPEAT_NONE, NULL, LAO_BLEND_NONE, LAO_DEPTH_COVERED, LAO_CULL_NONE, {{"occlusion", '=', 1}},
      {LAO__CLEAR("ao"), LAO__KEEP("zbuffer")},
-     {LAO__READ("tangent"), LAO__READ_ALL("level_depth"), LAO__READ_ALL("level_axial"), LAO__READ_ALL("level_tangent")}},
+     {LAO__READ("tangent"), LAO__READ_ALL("level"), LAO__READ_ALL("level_tangent")}},
     /* for debugging only: shadows leak into what is not shadowed (Koehler 2017, 4.4) */
     {"smooth_x", LAO_PASS_FULLSCREEN, "smooth", 0, LAO_STAGE_SHADE, LAO_SCOPE_PER_SET, LAO_REPEAT_COUNT, "smoothing", LAO_BLEND_NONE, LAO_DEPTH_NONE, LAO_CULL_NONE, {{"occlusion", '=', 1}},
      {LAO__OTHER("ao")}, {LAO__READ("ao"), LAO__READ("color")}},
@@ -2163,7 +2234,7 @@ const char *lao_result_text(lao_result result) {
 }
 
 uint32_t lao_format_bytes(lao_format format) {
-    static const uint8_t bytes[LAO_FORMAT_COUNT] = {0, 4, 8, 16, 4, 4, 0};
+    static const uint8_t bytes[LAO_FORMAT_COUNT] = {0, 4, 8, 16, 4, 4, 4, 0};
     return (uint32_t)format < LAO_FORMAT_COUNT ? bytes[format] : 0;
 }
 
@@ -2621,6 +2692,12 @@ static int lao__check_names(const lao_graph *graph, char *text, size_t size) {
                               "image '%s' counts its levels by the unknown setting '%s'",
                               graph->images[i]->name, graph->images[i]->levels);
         }
+        for (k = 0; k < 4 && graph->images[i]->format == LAO_FORMAT_R32UI; k++) {
+            if (graph->images[i]->clear[k] != 0) {
+                return lao__fault(text, size, "image '%s' holds words, which are cleared to 0%s",
+                                  graph->images[i]->name, "");
+            }
+        }
     }
     for (i = 0; i < graph->pass_count; i++) {
         for (k = 0; k < i; k++) {
@@ -2797,6 +2874,12 @@ int lao_graph_check(const lao_graph *graph, const lao_shader *shaders, uint32_t 
             if (lao__image_find(graph, row->writes[k].image) == LAO_NO_INDEX) {
                 return lao__fault(text, text_size, "pass '%s' writes the unknown image '%s'",
                                   row->name, row->writes[k].image);
+            }
+            if (row->blend != LAO_BLEND_NONE &&
+                graph->images[lao__image_find(graph, row->writes[k].image)]->format ==
+                    LAO_FORMAT_R32UI) {
+                return lao__fault(text, text_size, "pass '%s' blends the words of '%s'", row->name,
+                                  row->writes[k].image);
             }
         }
         for (k = 0; k < LAO_MAX_CONDITIONS; k++) {
@@ -3239,7 +3322,7 @@ static void lao__plan_pass(lao__planner *p, uint32_t pass, uint32_t set) {
         break;
     case LAO_REPEAT_LEVELS_UP:
         n = lao__level_count(p, module, set, first);
-        for (i = 1; i < n; i++) {
+        for (i = row->writes[0].level_index + 1; i < n; i++) {
             lao__plan_turn(p, pass, set, i, i - 1);
         }
         break;
@@ -4881,16 +4964,17 @@ static float lao__half(uint32_t h) {
 }
 
 static uint32_t lao__channel_count(const lao_image_row *row) {
-    static const uint8_t plain[LAO_FORMAT_COUNT] = {0, 4, 4, 4, 1, 1, 0};
-    static const uint8_t coded[] = {0, 2, 2, 3};
+    static const uint8_t plain[LAO_FORMAT_COUNT] = {0, 4, 4, 4, 1, 1, 1, 0};
+    static const uint8_t coded[] = {0, 3, 3};
     return row->encoding == LAO_ENCODING_PLAIN ? plain[row->format] : coded[row->encoding];
 }
 
-/* One raw texel to the numbers it stands for. */
-static void lao__decode(const lao_image_row *row, const uint8_t *texel, float *out) {
+/* One raw texel to the numbers it stands for. align: of the set that wrote it. */
+static void lao__decode(const lao_image_row *row, int32_t align, const uint8_t *texel, float *out) {
     float f[4] = {0, 0, 0, 0};
     lao_v4 v;
     uint16_t half[4];
+    uint32_t word = 0;
     int i;
     if (row->format == LAO_FORMAT_RGBA8) {
         for (i = 0; i < 4; i++) {
@@ -4901,15 +4985,16 @@ static void lao__decode(const lao_image_row *row, const uint8_t *texel, float *o
         for (i = 0; i < 4; i++) {
             f[i] = lao__half(half[i]);
         }
+    } else if (row->format == LAO_FORMAT_R32UI) {
+        memcpy(&word, texel, sizeof word);
+        f[0] = (float)word;
     } else {
         memcpy(f, texel, lao_format_bytes(row->format));
     }
     v = lao_v4_make(f[0], f[1], f[2], f[3]);
-    if (row->encoding == LAO_ENCODING_DEPTH24) {
-        v = lao_v4_make(lao_depth_unpack(v), v.w, 0, 0);
-    } else if (row->encoding == LAO_ENCODING_AXIAL16) {
-        lao_v2 axial = lao_axial_unpack(v);
-        v = lao_v4_make(axial.x, axial.y, 0, 0);
+    if (row->encoding == LAO_ENCODING_LEVEL) {
+        lao_v2 direction = lao_level_direction(word, align);
+        v = lao_v4_make(direction.x, direction.y, lao_level_depth(word), 0);
     } else if (row->encoding == LAO_ENCODING_SIGNED8) {
         v = lao_v4_make(2 * v.x - 1, 2 * v.y - 1, 2 * v.z - 1, 0);
     }
@@ -4923,12 +5008,16 @@ lao_result lao_read(lao_context *context, lao_view view, const char *image, uint
     const lao_image_row *row;
     lao_result result = lao__read_instance(context, view, image, level, &object, &instance);
     size_t i, texels, bytes;
-    uint32_t channels;
+    uint32_t channels, set;
+    int32_t align;
     uint8_t *raw;
     if (result != LAO_OK) {
         return result;
     }
     row = context->graph.images[instance->image];
+    set = object->plan.steps[instance->last_step].set;
+    align =
+        (int32_t)object->values[(size_t)set * context->value_count + (size_t)LAO_SETTING_ID_align];
     texels = (size_t)instance->width * instance->height;
     bytes = lao_format_bytes(row->format);
     channels = lao__channel_count(row);
@@ -4942,7 +5031,7 @@ lao_result lao_read(lao_context *context, lao_view view, const char *image, uint
         }
         result = lao_read_raw(context, view, image, level, raw, texels * bytes, NULL);
         for (i = 0; i < texels && result == LAO_OK; i++) {
-            lao__decode(row, raw + i * bytes, data + i * channels);
+            lao__decode(row, align, raw + i * bytes, data + i * channels);
         }
         lao__delete(&context->allocator, raw, texels, bytes);
     }

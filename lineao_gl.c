@@ -48,6 +48,7 @@ enum {
     LAO__GL_DEPTH_TEST = 0x0B71,
     LAO__GL_BLEND = 0x0BE2, LAO__GL_MAX_TEXTURE_SIZE = 0x0D33, LAO__GL_MAX_VIEWPORT_DIMS = 0x0D3A,
     LAO__GL_TEXTURE_2D = 0x0DE1, LAO__GL_UNSIGNED_BYTE = 0x1401, LAO__GL_UNSIGNED_SHORT = 0x1403,
+    LAO__GL_UNSIGNED_INT = 0x1405, LAO__GL_RED_INTEGER = 0x8D94,
     LAO__GL_FLOAT = 0x1406, LAO__GL_HALF_FLOAT = 0x140B, LAO__GL_COLOR = 0x1800, LAO__GL_DEPTH = 0x1801,
     LAO__GL_DEPTH_COMPONENT = 0x1902, LAO__GL_RED = 0x1903, LAO__GL_RGBA = 0x1908, LAO__GL_FILL = 0x1B02,
     LAO__GL_VERSION = 0x1F02, LAO__GL_EXTENSIONS = 0x1F03, LAO__GL_NEAREST = 0x2600,
@@ -56,7 +57,8 @@ enum {
     LAO__GL_RGBA8 = 0x8058, LAO__GL_BLEND_DST_RGB = 0x80C8, LAO__GL_BLEND_SRC_RGB = 0x80C9,
     LAO__GL_BLEND_DST_ALPHA = 0x80CA, LAO__GL_BLEND_SRC_ALPHA = 0x80CB, LAO__GL_CLAMP_TO_EDGE = 0x812F,
     LAO__GL_TEXTURE_MAX_LEVEL = 0x813D, LAO__GL_MAJOR_VERSION = 0x821B, LAO__GL_MINOR_VERSION = 0x821C,
-    LAO__GL_NUM_EXTENSIONS = 0x821D, LAO__GL_R32F = 0x822E, LAO__GL_TEXTURE0 = 0x84C0, LAO__GL_RGBA32F = 0x8814,
+    LAO__GL_NUM_EXTENSIONS = 0x821D, LAO__GL_R32F = 0x822E, LAO__GL_R32UI = 0x8236,
+    LAO__GL_TEXTURE0 = 0x84C0, LAO__GL_RGBA32F = 0x8814,
     LAO__GL_RGBA16F = 0x881A, LAO__GL_BLEND_EQUATION_ALPHA = 0x883D, LAO__GL_CURRENT_QUERY = 0x8865,
     LAO__GL_MAX_TEXTURE_IMAGE_UNITS = 0x8872, LAO__GL_TEXTURE_COMPARE_MODE = 0x884C, LAO__GL_ARRAY_BUFFER = 0x8892,
     LAO__GL_ELEMENT_ARRAY_BUFFER = 0x8893, LAO__GL_STREAM_DRAW = 0x88E0, LAO__GL_STATIC_DRAW = 0x88E4,
@@ -122,6 +124,7 @@ static const lao__gl_feature lao__gl_features[] = {
     X(0, lao__gl_enum, CheckFramebufferStatus, (lao__gl_enum target))                                                   \
     X(0, void, ClampColor, (lao__gl_enum target, lao__gl_enum clamp))                                                   \
     X(0, void, ClearBufferfv, (lao__gl_enum buffer, lao__gl_int index, const float *value))                             \
+    X(0, void, ClearBufferuiv, (lao__gl_enum buffer, lao__gl_int index, const lao__gl_uint *value))                     \
     X(0, void, ColorMaski, (lao__gl_uint buffer, lao__gl_bool r, lao__gl_bool g, lao__gl_bool b, lao__gl_bool a))       \
     X(0, void, CompileShader, (lao__gl_uint shader))                                                                    \
     X(0, lao__gl_uint, CreateProgram, (void))                                                                           \
@@ -274,6 +277,7 @@ static const lao__gl_format lao__gl_formats[LAO_FORMAT_COUNT] = {
     {LAO__GL_RGBA16F, LAO__GL_RGBA, LAO__GL_HALF_FLOAT, 8},
     {LAO__GL_RGBA32F, LAO__GL_RGBA, LAO__GL_FLOAT, 16},
     {LAO__GL_R32F, LAO__GL_RED, LAO__GL_FLOAT, 4},
+    {LAO__GL_R32UI, LAO__GL_RED_INTEGER, LAO__GL_UNSIGNED_INT, 4},
     {LAO__GL_DEPTH_COMPONENT32F, LAO__GL_DEPTH_COMPONENT, LAO__GL_FLOAT, 4},
     {0, 0, 0, 0}, /* LAO_FORMAT_HOST */
 };
@@ -1401,11 +1405,18 @@ static void lao__gl_give_back(const lao__gl *gl, const lao__gl_step *step, const
     lao__gl_borrow(gl, row, execution, 0);
 }
 
-static void lao__gl_clear(const lao__gl *gl, const lao_plan_step *step) {
+static void lao__gl_clear(const lao__gl *gl, const lao_plan *plan, const lao_plan_step *step) {
+    static const lao__gl_uint nothing[4] = {0, 0, 0, 0};
     uint32_t i;
-    for (i = 0; i < step->color_count; i++)
-        if (step->colors[i].instance != LAO_NO_INDEX && step->colors[i].clear == 1)
-            gl->ClearBufferfv(LAO__GL_COLOR, (lao__gl_int)i, step->colors[i].value);
+    for (i = 0; i < step->color_count; i++) {
+        const lao_plan_write *write = &step->colors[i];
+        if (write->instance == LAO_NO_INDEX || write->clear != 1)
+            continue;
+        if (plan->instances[write->instance].format == LAO_FORMAT_R32UI)
+            gl->ClearBufferuiv(LAO__GL_COLOR, (lao__gl_int)i, nothing);
+        else
+            gl->ClearBufferfv(LAO__GL_COLOR, (lao__gl_int)i, write->value);
+    }
     if (step->depth.instance != LAO_NO_INDEX && step->depth.clear == 1) {
         gl->DepthMask(1); /* clears obey it */
         gl->ClearBufferfv(LAO__GL_DEPTH, 0, step->depth.value);
@@ -1509,7 +1520,7 @@ static lao_result lao__gl_run_step(const lao__gl *gl, const lao__gl_view *view, 
         viewport[2] = step->width;
         viewport[3] = step->height;
         lao__gl_viewport(gl, viewport);
-        lao__gl_clear(gl, step);
+        lao__gl_clear(gl, execution->plan, step);
         lao__gl_set_tests(gl, execution->plan, step);
         lao__gl_bind_block(gl, LAO__GL_BLOCK_SETTINGS,
                            lao__gl_settings_offset(gl, execution, step->set, step->module),

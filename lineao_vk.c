@@ -392,6 +392,8 @@ static VkFormat lao__vk_format(lao_format format) {
         return VK_FORMAT_R32G32B32A32_SFLOAT;
     case LAO_FORMAT_R32F:
         return VK_FORMAT_R32_SFLOAT;
+    case LAO_FORMAT_R32UI:
+        return VK_FORMAT_R32_UINT;
     case LAO_FORMAT_D32F:
         return VK_FORMAT_D32_SFLOAT;
     default:
@@ -525,6 +527,7 @@ static lao_result lao__vk_check_formats(const lao__vk *vk) {
         {LAO_FORMAT_RGBA16F, LAO__VK_COLOR, 0, "RGBA16F"},
         {LAO_FORMAT_RGBA32F, LAO__VK_COLOR, VK_FORMAT_FEATURE_UNIFORM_TEXEL_BUFFER_BIT, "RGBA32F"},
         {LAO_FORMAT_R32F, LAO__VK_COLOR, 0, "R32F"},
+        {LAO_FORMAT_R32UI, LAO__VK_COLOR, 0, "R32UI"},
         {LAO_FORMAT_D32F,
          VK_FORMAT_FEATURE_SAMPLED_IMAGE_BIT | VK_FORMAT_FEATURE_DEPTH_STENCIL_ATTACHMENT_BIT, 0,
          "D32F"},
@@ -597,7 +600,9 @@ static lao_result lao__vk_sampler_make(lao__vk *vk) {
     info.mipmapMode = VK_SAMPLER_MIPMAP_MODE_NEAREST;
     info.addressModeU = info.addressModeV = info.addressModeW =
         VK_SAMPLER_ADDRESS_MODE_CLAMP_TO_EDGE;
-    info.unnormalizedCoordinates = VK_TRUE; /* texel positions, exact at any size */
+    /* not 0, though images have one level: lavapipe samples at half the speed behind a clamp to it
+     */
+    info.maxLod = VK_LOD_CLAMP_NONE;
     return LAO__VK_CREATE(vk, Sampler, &info, &vk->sampler);
 }
 
@@ -1456,6 +1461,7 @@ static VkRenderingAttachmentInfo lao__vk_attachment(const lao__vk_build *build,
     if (depth) {
         info.clearValue.depthStencil.depth = write->value[0];
     } else {
+        /* words are cleared to 0 alone, which has no bits either way */
         memcpy(info.clearValue.color.float32, write->value, sizeof write->value);
     }
     return info;

@@ -2,9 +2,11 @@
 #include "bench.h"
 
 #include "bench_case.h"
+#include "bench_flow.h"
 #include "bench_modules.h"
 #include "bench_report.h"
 #include "bench_scene.h"
+#include "bench_table1.h"
 
 #include <errno.h>
 #include <stdlib.h>
@@ -25,7 +27,7 @@ typedef struct bench_options {
     uint32_t lines[MOST], line_count;
     bench_size sizes[MOST];
     uint32_t size_count;
-    bool json, data, quick, help;
+    bool json, data, quick, flow, help, table1;
     const char *export_lines;
 } bench_options;
 
@@ -34,20 +36,26 @@ static const char usage[] =
     "  --json                  one JSON object instead of a table\n"
     "  --backend gl|vk|both    (both)\n"
     "  --presets NAME,...      (default,classic); memory: of the first\n"
+    "  --halo NAME             of all presets: none, uniform, depth (depth)\n"
     "  --lines N,...           lines of 100 points of the scene `bundle` (1000,5000,30000)\n"
     "  --size WxH[@S],...      view size and supersampling (853x917,853x917@2: 853x917 and\n"
     "                          1706x1834 pixels)\n"
     "  --frames N              measured frames, after 2 to warm up (7)\n"
     "  --data                  also the real line sets in $LINEAO_DATA\n"
+    "  --table1                instead: Table 1 of Koehler 2017, static and animated frames of "
+    "the\n"
+    "                          scene `aorta` (30000 lines, 853x917@2, 3 frames), each "
+    "configuration\n"
+    "                          over the first, beside the paper's quotient\n"
     "  --quick                 1000 lines at 214x230, 3 frames, unless told otherwise\n"
+    "  --flow                  instead: pathlines of flow4d.h, 30000 (--quick: 1000; --lines N)\n"
     "  --export-lines FILE     only write lines and camera for bench/vtk_peer.py\n"
     "\n"
     "Passes are timed with a finish (OpenGL) or timestamps (Vulkan), in the same frames as their\n"
     "floors: floor_lines, the same quads with one flat colour and one target; floor_taps, as many\n"
-    "reads as the occlusion has taps (59), of one image, on every pixel, and nothing else;\n"
-    "floor_fetches, those reads of both images of the anisotropic pass.\n"
-    "X_over_Y: median of the quotients of each frame. occlusion_over_floor, _fetches: by covered\n"
-    "pixel, from least times, less what the background costs, which a frame without lines tells.\n"
+    "reads as the occlusion (59), of the same images, on every pixel, and nothing else.\n"
+    "X_over_Y: median of the quotients of each frame. occlusion_over_floor: by covered pixel,\n"
+    "from least times, less what the background costs, which a frame without lines tells.\n"
     "occlusion_over_covered: a background pixel's cost over a covered one's. peak_mb: the most\n"
     "memory of a process that only draws the first preset.\n";
 
@@ -114,6 +122,15 @@ static bool parse_frames(char *word, bench_options *options) {
            bench_fail("--frames: '%s' is not a count of 1 to %d", word, (int)BENCH_FRAMES);
 }
 
+static bool parse_halo(char *word, bench_options *options) {
+    lao_settings settings;
+    const lao_module *module = lao_lines_module();
+    memset(&settings, 0, sizeof settings);
+    options->common.halo = word;
+    return lao_setting_parse(module, lao_setting_find(module, "halo"), word, &settings) == 0 ||
+           bench_fail("--halo: '%s' is none of none, uniform, depth", word);
+}
+
 static bool parse_export(char *word, bench_options *options) {
     options->export_lines = word;
     return true;
@@ -129,6 +146,7 @@ static const flag_row flags[] = {
     {"--backend", false, parse_backend}, {"--presets", true, parse_preset},
     {"--lines", true, parse_lines},      {"--size", true, parse_size},
     {"--frames", false, parse_frames},   {"--export-lines", false, parse_export},
+    {"--halo", false, parse_halo},
 };
 
 static bool parse_value(const flag_row *flag, char *value, bench_options *options) {
@@ -147,10 +165,9 @@ static bool parse_flag(int argc, char **argv, int *i, bench_options *options) {
     struct {
         const char *name;
         bool *value;
-    } switches[] = {{"--json", &options->json},
-                    {"--data", &options->data},
-                    {"--quick", &options->quick},
-                    {"--help", &options->help}};
+    } switches[] = {{"--json", &options->json},   {"--data", &options->data},
+                    {"--quick", &options->quick}, {"--table1", &options->table1},
+                    {"--flow", &options->flow},   {"--help", &options->help}};
     for (size_t k = 0; k < sizeof switches / sizeof *switches; k++) {
         if (strcmp(argv[*i], switches[k].name) == 0)
             return *switches[k].value = true;
@@ -165,9 +182,24 @@ static bool parse_flag(int argc, char **argv, int *i, bench_options *options) {
     return bench_fail("%s is not known; see lineao bench --help", argv[*i]);
 }
 
+/* The measures of the paper's Table 1. */
+static void fill_in_table1(bench_options *options) {
+    static const bench_size paper = {853, 917, 2};
+    if (!options->line_count && !options->quick)
+        options->lines[options->line_count++] = 30000;
+    if (!options->size_count && !options->quick)
+        options->sizes[options->size_count++] = paper;
+    if (!options->common.frames)
+        options->common.frames = 3;
+}
+
 static void fill_in(bench_options *options) {
     static const uint32_t lines[] = {1000, 5000, 30000};
     static const bench_size sizes[] = {{853, 917, 1}, {853, 917, 2}}, small = {214, 230, 1};
+    if (options->table1)
+        fill_in_table1(options);
+    if (!options->common.halo)
+        options->common.halo = "depth";
     if (!options->line_count) {
         options->line_count = options->quick ? 1 : 3;
         memcpy(options->lines, lines, sizeof lines);
@@ -329,6 +361,25 @@ static bool data_run(const bench_options *options, cJSON *scenes, cJSON *notes) 
     return true;
 }
 
+static bool table1_run(const bench_options *options, cJSON *document) {
+    bench_case it = options->common;
+    it.line_count = options->lines[0];
+    it.width = options->sizes[0].width;
+    it.height = options->sizes[0].height;
+    it.supersampling = options->sizes[0].supersampling;
+    cJSON *backends = cJSON_AddObjectToObject(document, "table1");
+    for (uint32_t b = 0; b < it.backend_count; b++) {
+        bench_case one = it;
+        one.backends[0] = it.backends[b];
+        one.backend_count = 1;
+        cJSON *rows = in_child(bench_table1_run, &one);
+        if (!rows)
+            return false;
+        cJSON_AddItemToObject(backends, one.backends[0], rows);
+    }
+    return true;
+}
+
 static bool run(const bench_options *options, cJSON *document) {
     cJSON_AddStringToObject(document, "program", "lineao bench");
     cJSON_AddNumberToObject(document, "version", LAO_VERSION);
@@ -339,6 +390,8 @@ static bool run(const bench_options *options, cJSON *document) {
     if (!bench_floors_have_words())
         note(notes, "built without glslangValidator: no floors on Vulkan", "");
     cJSON *scenes = cJSON_AddArrayToObject(document, "scenes");
+    if (options->table1)
+        return table1_run(options, document);
     for (uint32_t i = 0; i < options->line_count; i++) {
         if (!scene_run(options, NULL, options->lines[i], scenes))
             return false;
@@ -354,6 +407,15 @@ static bool export_run(const bench_options *options) {
               bench_scene_export(&scene, options->export_lines);
     bench_scene_release(&scene);
     return ok;
+}
+
+/* The JSON or the table of `--flow`, which needs no backend. */
+static bool flow_run(const bench_options *options, cJSON *document) {
+    uint32_t lines = options->quick ? 1000 : 30000;
+    cJSON_AddStringToObject(document, "program", "lineao bench --flow");
+    cJSON_AddNumberToObject(document, "version", LAO_VERSION);
+    cJSON_AddNumberToObject(document, "processors", (double)sysconf(_SC_NPROCESSORS_ONLN));
+    return bench_flow_run(document, options->line_count ? options->lines[0] : lines);
 }
 
 static bool print_json(const cJSON *document) {
@@ -373,18 +435,20 @@ int bench_command(int argc, char **argv) {
     }
     if (options.help)
         return fputs(usage, stdout) < 0;
-    fill_in(&options);
-    if (options.export_lines)
+    if (!options.flow)
+        fill_in(&options);
+    if (!options.flow && options.export_lines)
         return export_run(&options) ? 0 : 1;
     cJSON *document = cJSON_CreateObject();
-    bool ok = run(&options, document);
-    if (ok) {
+    bool ok = options.flow ? flow_run(&options, document) : run(&options, document);
+    if (ok && !options.flow)
         bench_report_judge(document);
-        if (options.json)
-            ok = print_json(document);
-        else
-            bench_report_print(document);
-    }
+    if (ok && options.json)
+        ok = print_json(document);
+    else if (ok && options.flow)
+        bench_flow_print(document);
+    else if (ok)
+        bench_report_print(document);
     cJSON_Delete(document);
     return ok && fflush(stdout) == 0 ? 0 : 1;
 }

@@ -117,6 +117,7 @@ static bool settings_make(const bench_case *it, const char *preset, float width,
     memset(settings, 0, sizeof *settings);
     settings->width = width;
     settings->supersampling = (float)it->supersampling;
+    lao_setting_parse(module, lao_setting_find(module, "halo"), it->halo, settings);
     return lao_setting_parse(module, lao_setting_find(module, "preset"), preset, settings) == 0 ||
            bench_fail("--presets: there is no preset %s", preset);
 }
@@ -359,7 +360,6 @@ static void shot_tell(const side *s, uint32_t preset, uint32_t pixels, cJSON *ou
     const shot *it = &s->shots[preset];
     pixel_cost cost = occlusion_cost(s, preset, pixels);
     double taps = floor_cost(it, "floor_taps", pixels);
-    double fetches = floor_cost(it, "floor_fetches", pixels);
     add_number(out, "first_frame_ms", it->first);
     add_series(out, "frame_ms", &it->frame);
     add_series(out, "pass_sum_ms", &it->sum);
@@ -371,10 +371,8 @@ static void shot_tell(const side *s, uint32_t preset, uint32_t pixels, cJSON *ou
         cJSON_AddNumberToObject(row, "level", it->passes[i].level);
         add_series(row, NULL, &it->passes[i].time);
     }
-    add_number(out, "lines_over_floor",
-               quotient(lines_find(it), pass_find(it, "floor_lines")));
+    add_number(out, "lines_over_floor", quotient(lines_find(it), pass_find(it, "floor_lines")));
     add_number(out, "occlusion_over_floor", over(cost.covered, taps));
-    add_number(out, "occlusion_over_fetches", over(cost.covered, fetches));
     add_number(out, "occlusion_pass_over_floor_pass",
                quotient(pass_find(it, "occlusion"), pass_find(it, "floor_taps")));
     add_number(out, "occlusion_ns_per_covered_pixel", cost.covered);

@@ -14,6 +14,7 @@ typedef struct bench_case {
     uint32_t width, height, supersampling;
     const char *presets[BENCH_PRESETS];
     uint32_t preset_count;
+    const char *halo; /* of all presets, so that they differ in the occlusion alone */
     const char *backends[BENCH_BACKENDS];
     uint32_t backend_count;
     uint32_t frames; /* measured, after BENCH_WARM_UP */

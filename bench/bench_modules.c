@@ -66,27 +66,20 @@ static void add_lines(bench_floors *floors) {
     row->writes[1] = reference("floor_zbuffer", LAO_LOAD_CLEAR);
 }
 
-/* `second`: a further image to read, NULL for none. */
-static void add_taps(bench_floors *floors, const char *name, const char *second) {
+static void add_taps(bench_floors *floors) {
     lao_pass_row *row = &floors->passes[floors->module.pass_count++];
     memset(row, 0, sizeof *row);
-    row->name = name;
-    row->shader = name;
+    row->name = row->shader = "floor_taps";
     row->stage = LAO_STAGE_SHADE;
     row->scope = LAO_SCOPE_PER_SET;
     row->when[0].name = "occlusion";
     row->when[0].compare = '=';
     row->when[0].value = 1;
-    if (second) {
-        row->when[1].name = "align";
-        row->when[1].compare = '!';
-        row->when[1].value = LAO_ALIGN_NONE;
-    }
-    row->writes[0] = reference(name, LAO_LOAD_DISCARD);
-    for (uint32_t i = 0; i < (second ? 6u : 3u); i++) {
-        row->reads[i] = reference(i < 3 ? "level_depth" : second, LAO_LOAD_DISCARD);
+    row->writes[0] = reference("floor_taps", LAO_LOAD_DISCARD);
+    for (uint32_t i = 0; i < 3; i++) {
+        row->reads[i] = reference("level", LAO_LOAD_DISCARD);
         row->reads[i].level = LAO_LEVEL_INDEX;
-        row->reads[i].level_index = i % 3;
+        row->reads[i].level_index = i;
     }
 }
 
@@ -101,9 +94,7 @@ const lao_module *bench_floors_make(bench_floors *floors, const lao_settings *se
     add_image(floors, "floor_color", LAO_FORMAT_RGBA8);
     add_image(floors, "floor_zbuffer", LAO_FORMAT_D32F);
     add_image(floors, "floor_taps", LAO_FORMAT_R32F);
-    add_image(floors, "floor_fetches", LAO_FORMAT_R32F);
     add_lines(floors);
-    add_taps(floors, "floor_taps", NULL);
-    add_taps(floors, "floor_fetches", "level_axial");
+    add_taps(floors);
     return &floors->module;
 }

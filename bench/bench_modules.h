@@ -1,9 +1,8 @@
 /* Floors: passes of a further module that cost what a pass of lineao cannot do without.
  *
  *   floor_lines    the quads of the line pass, by its own vertex stage, one flat colour, one target
- *   floor_taps     32 + 16 + 11 reads of the level depths at literal offsets, summed, nothing else,
- *                  on every pixel: its time over all pixels is what a covered one cannot do without
- *   floor_fetches  the same reads of both images that the anisotropic occlusion pass reads
+ *   floor_taps     32 + 16 + 11 reads of the pyramid at literal offsets, summed, nothing else, on
+ *                  every pixel: its time over all pixels is what a covered one cannot do without
  *
  * They run in the frame of the passes that they stand beside, so that what disturbs the one
  * disturbs the other. */
@@ -19,8 +18,8 @@ enum { BENCH_SETTINGS = 64 };
 /* One module; it must outlive the contexts that it is given to, and not move. */
 typedef struct bench_floors {
     lao_module module;
-    lao_pass_row passes[3];
-    lao_image_row images[4];
+    lao_pass_row passes[2];
+    lao_image_row images[3];
     lao_setting_row settings[BENCH_SETTINGS];
     char names[BENCH_SETTINGS][32];
 } bench_floors;

@@ -18,21 +18,26 @@ bool bench_fail(const char *format, ...) {
     return false;
 }
 
+static bool make(bench_scene *scene, const char *name, uint32_t line_count, float direction[3],
+                 float up[3]) {
+    if (!scene_make(name, line_count, 0, &scene->made))
+        return bench_fail("no memory for the scene");
+    scene->line_count = scene->made.line_count;
+    scene->point_count = scene->made.point_count;
+    scene->offsets = scene->made.offsets;
+    scene->points = scene->made.points;
+    scene->times = scene->made.times;
+    scene->width = scene->made.width;
+    memcpy(direction, scene->made.view_direction, 3 * sizeof *direction);
+    memcpy(up, scene->made.up, 3 * sizeof *up);
+    return true;
+}
+
 static bool fill(bench_scene *scene, const char *path, uint32_t line_count, float direction[3],
                  float up[3]) {
     static const float left[3] = {1, 0, 0}, head[3] = {0, 0, 1};
-    if (!path) {
-        if (!scene_make("bundle", line_count, 0, &scene->made))
-            return bench_fail("no memory for the scene");
-        scene->line_count = scene->made.line_count;
-        scene->point_count = scene->made.point_count;
-        scene->offsets = scene->made.offsets;
-        scene->points = scene->made.points;
-        scene->width = scene->made.width;
-        memcpy(direction, scene->made.view_direction, sizeof left);
-        memcpy(up, scene->made.up, sizeof head);
-        return true;
-    }
+    if (!path)
+        return make(scene, "bundle", line_count, direction, up);
     io_error error;
     if (!io_read_lines(path, NULL, &scene->read, &error))
         return bench_fail("%s: %s", path, error.text);
@@ -62,15 +67,29 @@ static void enclose(bench_scene *scene, float lo[3], float hi[3]) {
     scene->sphere[3] = (float)sqrt(squared);
 }
 
-bool bench_scene_open(bench_scene *scene, const char *path, uint32_t line_count, double aspect) {
-    float direction[3], up[3], lo[3], hi[3];
-    memset(scene, 0, sizeof *scene);
-    if (!fill(scene, path, line_count, direction, up))
-        return false;
+static void look(bench_scene *scene, const float direction[3], const float up[3], double aspect) {
+    float lo[3], hi[3];
     enclose(scene, lo, hi);
     camera_frame(lo, hi, scene->points, scene->point_count, direction, up, aspect, 0.05,
                  &scene->pose);
+}
+
+bool bench_scene_open(bench_scene *scene, const char *path, uint32_t line_count, double aspect) {
+    float direction[3], up[3];
+    memset(scene, 0, sizeof *scene);
+    if (!fill(scene, path, line_count, direction, up))
+        return false;
+    look(scene, direction, up, aspect);
     return true;
+}
+
+bool bench_scene_timed(bench_scene *scene, const char *name, uint32_t line_count, double aspect) {
+    float direction[3], up[3];
+    memset(scene, 0, sizeof *scene);
+    if (!make(scene, name, line_count, direction, up))
+        return false;
+    look(scene, direction, up, aspect);
+    return scene->times || bench_fail("the scene %s has no times", name);
 }
 
 void bench_scene_release(bench_scene *scene) {
@@ -78,6 +97,7 @@ void bench_scene_release(bench_scene *scene) {
     io_lines_free(&scene->read);
     scene->offsets = NULL;
     scene->points = NULL;
+    scene->times = NULL;
 }
 
 bool bench_scene_export(const bench_scene *scene, const char *path) {

@@ -17,12 +17,16 @@ typedef struct bench_scene {
     uint32_t line_count, point_count;
     const uint32_t *offsets;
     const float *points; /* mm */
+    const float *times;  /* ms; NULL: none */
     float width;         /* mm */
     float sphere[4];     /* around the points; kept when they are released */
     camera_pose pose;    /* all of it, seen as a whole */
     scene_lines made;    /* one of the two owns the points */
     io_lines read;
 } bench_scene;
+
+/* The same of an embedded scene with times, of that name. */
+bool bench_scene_timed(bench_scene *scene, const char *name, uint32_t line_count, double aspect);
 
 /* Makes the embedded scene `bundle` (path NULL) or reads a file. aspect: width / height of the
  * view. False: reported. */

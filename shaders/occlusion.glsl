@@ -1,29 +1,21 @@
 /* Line ambient occlusion (Koehler 2017, Eqs. 1-12; METHODS 1.5-1.9, 2.4): the mean over levels of the mean over samples. */
 LAO_TEX(0, sampler2D, tangent)
-LAO_TEX(1, sampler2D, depth0)
-LAO_TEX(2, sampler2D, depth1)
-LAO_TEX(3, sampler2D, depth2)
-LAO_TEX(4, sampler2D, depth3)
-LAO_TEX(5, sampler2D, depth4)
-LAO_TEX(6, sampler2D, depth5)
-LAO_TEX(7, sampler2D, depth6)
-LAO_TEX(8, sampler2D, depth7)
-LAO_TEX(9, sampler2D, axial0)
-LAO_TEX(10, sampler2D, axial1)
-LAO_TEX(11, sampler2D, axial2)
-LAO_TEX(12, sampler2D, axial3)
-LAO_TEX(13, sampler2D, axial4)
-LAO_TEX(14, sampler2D, axial5)
-LAO_TEX(15, sampler2D, axial6)
-LAO_TEX(16, sampler2D, axial7)
-LAO_TEX(17, sampler2D, tangent0)
-LAO_TEX(18, sampler2D, tangent1)
-LAO_TEX(19, sampler2D, tangent2)
-LAO_TEX(20, sampler2D, tangent3)
-LAO_TEX(21, sampler2D, tangent4)
-LAO_TEX(22, sampler2D, tangent5)
-LAO_TEX(23, sampler2D, tangent6)
-LAO_TEX(24, sampler2D, tangent7)
+LAO_TEX(1, usampler2D, level0)
+LAO_TEX(2, usampler2D, level1)
+LAO_TEX(3, usampler2D, level2)
+LAO_TEX(4, usampler2D, level3)
+LAO_TEX(5, usampler2D, level4)
+LAO_TEX(6, usampler2D, level5)
+LAO_TEX(7, usampler2D, level6)
+LAO_TEX(8, usampler2D, level7)
+LAO_TEX(9, sampler2D, tangent0)
+LAO_TEX(10, sampler2D, tangent1)
+LAO_TEX(11, sampler2D, tangent2)
+LAO_TEX(12, sampler2D, tangent3)
+LAO_TEX(13, sampler2D, tangent4)
+LAO_TEX(14, sampler2D, tangent5)
+LAO_TEX(15, sampler2D, tangent6)
+LAO_TEX(16, sampler2D, tangent7)
 LAO_CONSTANT(0, lao_constant_align)
 LAO_CONSTANT(1, lao_constant_light)
 LAO_CONSTANT(2, lao_constant_levels)
@@ -44,44 +36,43 @@ struct lao_centre {
 /* What a level brings to every sample. */
 struct lao_gather {
     lao_sampler rows;
-    vec4 size;    /* of the level: width, height, 1 / width, 1 / height */
-    lao_v2 axial; /* the centre's direction on this level */
-    float depth;  /* the centre's depth on this level */
-    float slope;  /* of the depth weight */
+    vec2 inverse;    /* of the level's size */
+    uint centre;     /* the pixel on this level */
+    float threshold; /* delta 0 and what is visible beyond it, in steps of depth */
+    float least;
+    float slope;      /* of the depth weight */
+    float align_floor; /* 1 where the centre has no direction */
 };
 
-lao_gather lao_gather_make(sampler2D depths, sampler2D axials, lao_centre c, uint level) {
+lao_gather lao_gather_make(usampler2D words, lao_centre c, uint level) {
     lao_gather g;
-    vec2 size = vec2(textureSize(depths, 0));
     LAO_EXACT float texel = 1.0 / float(1u << level);
     float radius = lao_sample_radius(c.zoom, lao_setting_radius, lao_setting_width, lao_setting_radius_step, level);
-    g.size = vec4(size, 1.0 / size);
+    LAO_EXACT float step = lao_frame.host_depth.w / LAO_LEVEL_STEPS;
+    LAO_EXACT float threshold = lao_setting_depth_threshold / step;
+    LAO_EXACT float slope = step * lao_depth_weight_slope(lao_depth_reach(lao_setting_density, level,
+                                                                          uint(lao_constant_levels)),
+                                                          lao_setting_depth_threshold);
+    g.inverse = 1.0 / vec2(textureSize(words, 0));
     g.rows = lao_sampler_make(c.noise, c.n, c.r, radius, texel, c.pixel.x, c.pixel.y);
-    float x = floor(g.rows.centre.x);
-    float y = floor(g.rows.centre.y);
-    g.depth = lao_depth_unpack(LAO_TEXEL(depths, x, y, g.size.zw));
-    g.axial = lao_v2_make(0.0, 0.0);
-    if (lao_constant_align != LAO_ALIGN_NONE) {
-        g.axial = lao_axial_unpack(LAO_TEXEL(axials, x, y, g.size.zw));
-    }
-    g.slope = lao_depth_weight_slope(lao_depth_reach(lao_setting_density, level, uint(lao_constant_levels)),
-                                     lao_setting_depth_threshold);
+    g.centre = LAO_TEXEL(words, g.rows.own.x, g.rows.own.y, g.inverse).x;
+    g.threshold = threshold;
+    g.least = lao_constant_strict_zero != 0 ? -threshold : 0.0;
+    g.slope = slope;
+    g.align_floor = lao_level_known(g.centre) ? lao_setting_align_floor : 1.0;
     return g;
 }
 
 /* One sample: (its share of the occlusion, 1 when it counts). */
-vec2 lao_sample_weight(sampler2D depths, sampler2D axials, sampler2D tangents, lao_centre c, lao_gather g,
-                       lao_v3 direction) {
-    lao_tap tap = lao_tap_make(g.rows, direction, g.size.xy);
-    LAO_EXACT float nearer = g.depth - lao_depth_unpack(LAO_TEXEL(depths, tap.x, tap.y, g.size.zw));
-    LAO_EXACT float difference = nearer * lao_frame.host_depth.w;
-    LAO_EXACT float weight = tap.use;
+vec2 lao_sample_weight(sampler2D tangents, lao_centre c, lao_gather g, lao_v3 direction, lao_tap tap, uint word) {
+    LAO_EXACT float beyond = lao_level_nearer(g.centre, word) - g.threshold;
+    bool visible = tap.counts;
+    LAO_EXACT float weight = 1.0;
     if (lao_uses_visibility(lao_constant_show)) {
-        float least = lao_constant_strict_zero != 0 ? 0.0 : lao_setting_depth_threshold;
-        weight = difference >= least ? weight : 0.0;
+        visible = visible && beyond >= g.least;
     }
     if (lao_uses_depth(lao_constant_show)) {
-        weight = weight * lao_depth_weight(difference, lao_setting_depth_threshold, g.slope);
+        weight = lao_depth_weight(beyond, g.slope);
     }
     if (lao_uses_light(lao_constant_show)) {
         if (lao_constant_light == LAO_LIGHT_PAPER) {
@@ -89,35 +80,61 @@ vec2 lao_sample_weight(sampler2D depths, sampler2D axials, sampler2D tangents, l
             weight = weight *
                      lao_light_weight(c.diffuse, tap.n_omega, specular, tap.r_omega, lao_constant_light_exponent);
         } else {
-            lao_v3 occluder = lao_signed_unpack(LAO_TEXEL(tangents, tap.x, tap.y, g.size.zw));
-            lao_v3 omega = lao_v3_scale(lao_mirror(direction, c.noise), tap.flip);
+            lao_v3 occluder = lao_signed_unpack(textureLod(tangents, tap.at, 0.0));
+            lao_v3 omega = lao_v3_scale(lao_mirror(direction, c.noise), lao_turned(1.0, tap.side));
             weight = weight *
                      lao_light_weight_author(omega, tap.n_omega, occluder, c.l, lao_constant_light_exponent);
         }
     }
     if (lao_constant_align != LAO_ALIGN_NONE && lao_uses_alignment(lao_constant_show)) {
-        lao_v2 axial = lao_axial_unpack(LAO_TEXEL(axials, tap.x, tap.y, g.size.zw));
-        float x = lao_constant_align == LAO_ALIGN_ROTATION ? lao_axial_difference(g.axial, axial)
-                                                           : lao_alpha_difference(g.axial, axial);
-        weight = weight * lao_align_weight(x, lao_setting_align_intensity, lao_setting_align_floor);
+        float x = lao_constant_align == LAO_ALIGN_ROTATION ? lao_axial_difference(g.centre, word)
+                                                           : lao_alpha_difference(g.centre, word);
+        LAO_EXACT float aligned = lao_align_weight(x, lao_setting_align_intensity, g.align_floor);
+        weight = weight * (lao_level_known(word) ? aligned : 1.0);
     }
-    return vec2(weight, tap.use);
+    return vec2(visible ? weight : 0.0, tap.counts ? 1.0 : 0.0);
+}
+
+/* Four samples, their reads first: one after the other, each would wait for its own. */
+vec2 lao_sample_four(vec2 before, usampler2D words, sampler2D tangents, lao_centre c, lao_gather g, lao_v3 r0,
+                     lao_v3 r1, lao_v3 r2, lao_v3 r3) {
+    LAO_EXACT vec2 sum = before;
+    lao_tap t0 = lao_tap_make(g.rows, r0, g.inverse);
+    lao_tap t1 = lao_tap_make(g.rows, r1, g.inverse);
+    lao_tap t2 = lao_tap_make(g.rows, r2, g.inverse);
+    lao_tap t3 = lao_tap_make(g.rows, r3, g.inverse);
+    uint w0 = textureLod(words, t0.at, 0.0).x;
+    uint w1 = textureLod(words, t1.at, 0.0).x;
+    uint w2 = textureLod(words, t2.at, 0.0).x;
+    uint w3 = textureLod(words, t3.at, 0.0).x;
+    sum = sum + lao_sample_weight(tangents, c, g, r0, t0, w0);
+    sum = sum + lao_sample_weight(tangents, c, g, r1, t1, w1);
+    sum = sum + lao_sample_weight(tangents, c, g, r2, t2, w2);
+    sum = sum + lao_sample_weight(tangents, c, g, r3, t3, w3);
+    return sum;
+}
+
+vec2 lao_sample_one(vec2 before, usampler2D words, sampler2D tangents, lao_centre c, lao_gather g, lao_v3 direction) {
+    lao_tap tap = lao_tap_make(g.rows, direction, g.inverse);
+    uint word = textureLod(words, tap.at, 0.0).x;
+    LAO_EXACT vec2 sum = before + lao_sample_weight(tangents, c, g, direction, tap, word);
+    return sum;
 }
 
 /* Any other number of samples: the directions are computed. */
-vec2 lao_sample_loop(sampler2D depths, sampler2D axials, sampler2D tangents, lao_centre c, lao_gather g, uint level) {
+vec2 lao_sample_loop(usampler2D words, sampler2D tangents, lao_centre c, lao_gather g, uint level) {
     LAO_EXACT vec2 sum = vec2(0.0);
     uint count = lao_sample_count(uint(lao_constant_samples), level);
     for (uint i = 0u; i < count; i++) {
-        sum = sum + lao_sample_weight(depths, axials, tangents, c, g, lao_sample_direction(level, i, count));
+        sum = lao_sample_one(sum, words, tangents, c, g, lao_sample_direction(level, i, count));
     }
     return sum;
 }
 
 void main() {
     ivec2 pixel = LAO_PIXEL;
-    vec4 own = texelFetch(depth0, pixel, 0);
-    if (own.w < 0.5) {
+    uint own = texelFetch(level0, pixel, 0).x;
+    if (own == 0u) {
         out_ao = vec4(0.0);
         return;
     }
@@ -131,7 +148,7 @@ void main() {
     c.diffuse = diffuse;
     c.r = lao_v3_along(lao_v3_scale(c.l, -1.0), c.n, 2.0 * nl);
     c.noise = lao_pixel_noise(uint(pixel.x), uint(pixel.y));
-    c.zoom = line.w > 0.0 ? line.w : lao_pixel_zoom(lao_frame.scale, lao_frame.depth, lao_depth_unpack(own));
+    c.zoom = line.w > 0.0 ? line.w : lao_pixel_zoom(lao_frame.scale, lao_frame.depth, lao_level_depth(own));
     LAO_EXACT float total = 0.0;
 LAO_GENERATED_LEVELS
     LAO_EXACT float ao = total / float(lao_constant_levels);

@@ -34,9 +34,5 @@ void lao_emit(vec4 clip) {
 #define LAO_PIXEL ivec2(gl_FragCoord.xy)
 #endif
 
-/* One texel by integer coordinates given as floats; outside: the nearest inside. Vulkan's samplers are unnormalised. */
-#ifdef VULKAN
-#define LAO_TEXEL(name, x, y, inverse_size) textureLod(name, vec2((x) + 0.5, (y) + 0.5), 0.0)
-#else
+/* One texel by integer coordinates given as floats; outside: the nearest inside. */
 #define LAO_TEXEL(name, x, y, inverse_size) textureLod(name, vec2((x) + 0.5, (y) + 0.5) * (inverse_size), 0.0)
-#endif

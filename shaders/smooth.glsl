@@ -6,7 +6,7 @@ LAO_OUT(0, vec4, out_ao)
 #ifdef LAO_FRAGMENT
 void main() {
     ivec2 pixel = LAO_PIXEL;
-    ivec2 step_ = lao_constant_variant == 0 ? ivec2(1, 0) : ivec2(0, 1);
+    ivec2 step_ = ivec2(1 - lao_constant_variant, lao_constant_variant);
     ivec2 last = textureSize(ao, 0) - 1;
     LAO_EXACT float sum = 0.0;
     LAO_EXACT float weights = 0.0;

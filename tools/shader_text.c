@@ -4,6 +4,8 @@
    for docs/algorithm.md. Developer's tool, not shipped. */
 #define LINEAO_IMPLEMENTATION
 #include "lineao.h"
+#define SDFVESSEL_IMPLEMENTATION
+#include "sdfvessel.h"
 
 enum { SHIPPED_SAMPLES = 32, MOST_LEVELS = 8 };
 
@@ -63,34 +65,42 @@ static void print_graph(void) {
     lao_graph_print(&module, 1, print_graph_text, NULL);
 }
 
+/* Four at a time, then the rest one by one. */
+static void print_samples(uint32_t level, uint32_t count) {
+    uint32_t i, k, n;
+    for (i = 0; i < count; i += n) {
+        n = count - i >= 4 ? 4 : 1;
+        printf("            sum = lao_sample_%s(sum, level%u, tangent%u, c, g",
+               n == 4 ? "four" : "one", level, level);
+        for (k = 0; k < n; k++) {
+            lao_v3 d = lao_sample_direction(level, i + k, count);
+            printf(", lao_v3_make(%.9g, %.9g, %.9g)", (double)d.x, (double)d.y, (double)d.z);
+        }
+        printf(");\n");
+    }
+}
+
 static void print_levels(void) {
-    uint32_t level, i;
+    uint32_t level;
     for (level = 0; level < MOST_LEVELS; level++) {
-        uint32_t count = lao_sample_count(SHIPPED_SAMPLES, level);
         printf("    if (lao_constant_levels > %u) {\n", level);
-        printf("        lao_gather g = lao_gather_make(depth%u, axial%u, c, %uu);\n", level, level,
-               level);
+        printf("        lao_gather g = lao_gather_make(level%u, c, %uu);\n", level, level);
         printf("        LAO_EXACT vec2 sum = vec2(0.0);\n");
         printf("        if (lao_constant_samples == %d) {\n", SHIPPED_SAMPLES);
-        for (i = 0; i < count; i++) {
-            lao_v3 d = lao_sample_direction(level, i, count);
-            printf("            sum = sum + lao_sample_weight(depth%u, axial%u, tangent%u, c, g, "
-                   "lao_v3_make(%.9g, %.9g, %.9g));\n",
-                   level, level, level, (double)d.x, (double)d.y, (double)d.z);
-        }
+        print_samples(level, lao_sample_count(SHIPPED_SAMPLES, level));
         printf("        } else {\n");
-        printf("            sum = lao_sample_loop(depth%u, axial%u, tangent%u, c, g, %uu);\n       "
-               " }\n",
-               level, level, level, level);
+        printf("            sum = lao_sample_loop(level%u, tangent%u, c, g, %uu);\n        }\n",
+               level, level, level);
         printf("        LAO_EXACT float mean = sum.x / lao_max(sum.y, 1.0);\n        total = total "
                "+ mean;\n    }\n");
     }
 }
 
 int main(int argc, char **argv) {
-    const lao_module *modules[1];
+    const lao_module *modules[2];
     size_t i;
     modules[0] = lao_lines_module();
+    modules[1] = sdv_module();
     for (i = 0; argc == 3 && i < sizeof modules / sizeof modules[0]; i++) {
         if (strcmp(argv[1], "settings") == 0 && strcmp(argv[2], modules[i]->name) == 0) {
             print_settings(modules[i]);

@@ -2,7 +2,9 @@
 
 #include "report.h"
 #include "scene.h"
+#include "video.h"
 
+#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -43,25 +45,26 @@ typedef struct flag_row {
 
 // clang-format off
 static const flag_row flags[] = {
-    {"--out", "-o", "FILE.png", FLAG_TEXT, BOTH | CLI_SHEET, ALL(out), NULL, "the picture; with --frames a pattern (out_%04d.png, first = 0)"},
+    {"--out", "-o", "FILE.png", FLAG_TEXT, BOTH | CLI_SHEET, ALL(out), NULL, "the picture; with --frames a pattern (out_%04d.png, first = 0), or a video: .mp4, .webm, .gif"},
     {"--out", "-o", "FILE", FLAG_TEXT, CLI_FLOW, ALL(out), NULL, "the lines: .vtp (with time and speed), .trk (the same) or .tck (positions alone)"},
-    {"--seeds", NULL, "N", FLAG_COUNT, TRACE, ALL(flow.seeds), NULL, "lines, each from a random place inside and a random time (30000)"},
+    {"--seeds", NULL, "N", FLAG_COUNT, TRACE, ALL(flow.seeds), NULL, "lines, each from a random place inside and a random time (one per 4 mm^3, 1000 to 30000)"},
     {"--seed", NULL, "N", FLAG_COUNT, TRACE, ALL(flow.seed), NULL, "of the random numbers; the same gives the same lines"},
     {"--mask", NULL, "FILE|NAME", FLAG_TEXT, ANY, ALL(flow.mask), NULL, "where the vessel is: a volume of the same size, or an array of the FILE (>= 0.5 is inside)"},
     {"--threshold", NULL, "M/S", FLAG_LENGTH, TRACE, ALL(flow.threshold), NULL, "inside is where the speed reaches this at some time (without a mask: a tenth of the highest)"},
-    {"--streamlines", NULL, NULL, FLAG_SWITCH, TRACE, ALL(flow.streamlines), NULL, "lines of the frozen field at --time instead of pathlines"},
+    {"--streamlines", NULL, NULL, FLAG_SWITCH, TRACE, ALL(flow.streamlines), NULL, "lines of the field frozen --at a time, instead of pathlines"},
+    {"--at", NULL, "MS", FLAG_NUMBER, TRACE, ALL(flow.at), NULL, "the time of --streamlines (0)"},
     {"--step", NULL, "MS|auto", FLAG_AUTO, TRACE, ALL(flow.step), NULL, "time between the points of a line (period / 200; steady: half a voxel at the highest speed)"},
     {"--max-points", NULL, "N", FLAG_COUNT, TRACE, ALL(flow.max_points), NULL, "of a line (200)"},
-    {"--span", NULL, "NAME", FLAG_CHOICE, TRACE, ALL(flow.span), "cycle|loop|free", "cycle: one beat, the same for all (default); loop: half a beat each way; free: up to --max-points"},
+    {"--span", NULL, "NAME", FLAG_CHOICE, TRACE, ALL(flow.span), "cycle|loop|free", "cycle: one beat, the same for all (default); loop: half a beat each way (for --time, --frames); free: up to --max-points"},
     {"--method", NULL, "rk4|dopri", FLAG_CHOICE, TRACE, ALL(flow.method), "rk4|dopri", "Runge-Kutta of fixed step (default) or Dormand-Prince, which keeps --tolerance"},
     {"--tolerance", NULL, "MM", FLAG_ABOVE, TRACE, ALL(flow.tolerance), NULL, "error of a part of a step, for dopri (0.0001)"},
     {"--attributes", NULL, "NAME", FLAG_CHOICE, TRACE, ALL(flow.attributes), "vorticity|curvature|all", "more per point: vorticity (1/s), curvature (1/mm) or all"},
     {"--names", NULL, "U,V,W[,MASK]", FLAG_TEXT, ANY, ALL(flow.names), NULL, "arrays of a volume: three components, or one vector: VELOCITY[,MASK]"},
-    {"--unit", NULL, "NAME", FLAG_CHOICE, ANY, ALL(flow.unit), "m/s|cm/s|mm/s", "of a volume's velocities: m/s (default), cm/s or mm/s"},
+    {"--unit", NULL, "NAME", FLAG_CHOICE, ANY & ~CLI_INFO, ALL(flow.unit), "m/s|cm/s|mm/s", "of a volume's velocities: m/s (default), cm/s or mm/s"},
     {"--axes", NULL, "mm|grid", FLAG_CHOICE, ANY, ALL(flow.axes), "mm|grid", "of a volume's velocities: those of its mm (default) or of its voxels"},
     {"--spacing", NULL, "MM[,MM,MM]", FLAG_SPACING, ANY, ALL(flow.spacing), NULL, "size of a volume's voxels, where it tells none or a wrong one"},
     {"--time-step", NULL, "MS", FLAG_ABOVE, ANY, ALL(flow.time_step), NULL, "between a volume's frames"},
-    {"--period", NULL, "MS", FLAG_ABOVE, ANY, ALL(flow.period), NULL, "of all its frames, instead of --time-step"},
+    {"--period", NULL, "MS", FLAG_ABOVE, CLI_INFO | CLI_FLOW, ALL(flow.period), NULL, "of all its frames, instead of --time-step"},
     {"--scene", NULL, "NAME", FLAG_SCENE, BOTH, ALL(scene), NULL, "embedded scene, when no FILE is given (aorta)"},
     {"--lines", NULL, "N", FLAG_COUNT, BOTH, ALL(lines), NULL, "lines of the embedded scene"},
     {"--size", NULL, "WxH", FLAG_SIZE, BOTH, ALL(size), NULL, "pixels (render: 1280x960, compare: 640x480)"},
@@ -72,8 +75,9 @@ static const flag_row flags[] = {
     {"--save-camera", NULL, "FILE.json", FLAG_TEXT, CLI_RENDER, ALL(save_camera), NULL, "write the camera that was used"},
     {"--view", NULL, "NAME", FLAG_CHOICE, BOTH, ALL(view), "axial|coronal|sagittal|iso", "direction of the automatic camera: axial, coronal, sagittal or iso"},
     {"--ortho", NULL, NULL, FLAG_SWITCH, BOTH, ALL(ortho), NULL, "make the automatic camera orthographic"},
-    {"--time", NULL, "MS", FLAG_NUMBER, TRACE, ALL(time), NULL, "the time to show (0)"},
-    {"--frames", NULL, "N", FLAG_COUNT, CLI_RENDER, ALL(frames), NULL, "a sequence of pictures, its time running over that of the data"},
+    {"--time", NULL, "MS", FLAG_NUMBER, BOTH, ALL(time), NULL, "show this time: of lines with times the trails (trail taper, unless set)"},
+    {"--frames", NULL, "N", FLAG_COUNT, CLI_RENDER, ALL(frames), NULL, "a sequence of pictures or a video over one period, or from the first time to the last"},
+    {"--fps", NULL, "N", FLAG_COUNT, CLI_RENDER, ALL(fps), NULL, "frames per second of a video (25)"},
     {"--backdrop", NULL, NULL, FLAG_SWITCH, CLI_RENDER, ALL(backdrop), NULL, "of velocity volumes and the scene flow: the highest speeds of the beat behind the lines, the vessel's outline around"},
     {"--legend", NULL, "SIDE", FLAG_CHOICE, CLI_RENDER, ALL(legend), "off|left|right|bottom", "scale of the attribute's colours in the picture: off, left, right or bottom (off)"},
     {"--legend-title", NULL, "TEXT", FLAG_TEXT, CLI_RENDER, ALL(legend_title), NULL, "above the scale (the attribute's name, and its unit if known)"},
@@ -88,9 +92,10 @@ static const flag_row flags[] = {
     {"--color", NULL, "#rrggbb", FLAG_PAINT, BOTH, FILE_(color), NULL, "or r,g,b in 0..1, direction, line or the NAME of an attribute"},
     {"--colormap", NULL, "NAME", FLAG_CHOICE, BOTH, FILE_(colormap), COLOUR_MAPS, "of attributes: " COLOUR_MAPS " (viridis)"},
     {"--range", NULL, "A,B", FLAG_RANGE, BOTH, FILE_(range), NULL, "values at both ends of the colour map, or percentiles of all (2%,98%)"},
-    {"--every", NULL, "N", FLAG_COUNT, BOTH, FILE_(every), NULL, "keep each N-th line"},
-    {"--min-length", NULL, "MM", FLAG_LENGTH, BOTH, FILE_(min_length), NULL, "drop shorter lines"},
+    {"--every", NULL, "N", FLAG_COUNT, TRACE, FILE_(every), NULL, "keep each N-th line"},
+    {"--min-length", NULL, "MM", FLAG_LENGTH, TRACE, FILE_(min_length), NULL, "drop shorter lines (files: none; of a volume: shorter than two voxels)"},
     {"--bundle", NULL, "NAME", FLAG_TEXT, BOTH, FILE_(bundle), NULL, "keep the lines of this group (TRX group, TT cluster)"},
+    {"--unit", NULL, "NAME", FLAG_CHOICE, CLI_INFO, FILE_(unit), "mm|cm|um|m|m/s|cm/s|mm/s", "of trees and meshes: mm, cm, um or m, whatever the file tells or seems to be in; of volumes: m/s, cm/s or mm/s"},
     {"--set", NULL, "NAME=VALUE", FLAG_ASSIGN, BOTH, FILE_(settings), NULL, "a setting, as its own flag does"},
 };
 // clang-format on
@@ -438,6 +443,12 @@ static bool check(const parser *p) {
         return cli_fail("%s: is for velocity volumes, and no FILE is given", o->flow_flag);
     if (p->command == CLI_RENDER && !o->out && !o->dump && !o->timings && !o->save_camera)
         return cli_fail("render: no output is asked for; write -o out.png");
+    if (cli_is_video(o->out) && !o->frames)
+        return cli_fail("%s: a video has frames; write --frames N", o->out);
+    if (cli_is_video(o->out) && o->background[3] < 1)
+        return cli_fail("--background: a video cannot be transparent; write pictures instead");
+    if (o->fps && !cli_is_video(o->out))
+        return cli_fail("--fps: is for videos; write -o out.mp4, out.webm or out.gif");
     if (o->file_count > 0 && (o->scene || o->lines))
         return cli_fail("%s: is for embedded scenes, and a FILE is given; %s",
                         o->scene ? "--scene" : "--lines",
@@ -456,6 +467,7 @@ static bool check(const parser *p) {
 bool cli_parse(cli_command_bit command, int argc, char **argv, cli_options *out) {
     memset(out, 0, sizeof *out);
     out->backend = "gl";
+    out->time = NAN;
     out->size[0] = command == CLI_COMPARE ? 640 : 1280;
     out->size[1] = command == CLI_COMPARE ? 480 : 960;
     out->legend = "off";
@@ -463,6 +475,7 @@ bool cli_parse(cli_command_bit command, int argc, char **argv, cli_options *out)
     out->all.range[0] = (colour_end){2, true};
     out->all.range[1] = (colour_end){98, true};
     out->flow.threshold = -1;
+    out->all.min_length = -1;
     cli_parse_color("#f4f4f2", out->background);
     out->files = cli_new((size_t)argc + 1, sizeof *out->files);
     if (!out->files)
@@ -530,7 +543,7 @@ void cli_print_flags(cli_command_bit command) {
     print_rows(command, false, false, "Flags");
     print_rows(command, false, true, "Velocity volumes");
     print_rows(command, true, false,
-               "Lines: before the first FILE for all FILEs, after a FILE for it alone");
+               "Of a FILE: before the first FILE for all FILEs, after a FILE for it alone");
     if (command & BOTH)
         print_settings();
 }

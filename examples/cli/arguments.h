@@ -26,8 +26,9 @@ typedef struct cli_source {
     const char *colormap;
     colour_end range[2]; /* values at both ends of the colour map */
     uint32_t every;
-    double min_length;
+    double min_length; /* mm; negative: none is given */
     const char *bundle;
+    const char *unit; /* of trees and meshes; NULL: as the file tells, or guessed */
 } cli_source;
 
 /* How velocity volumes are read and traced. Numbers are 0, texts NULL where nothing is given. */
@@ -35,8 +36,8 @@ typedef struct cli_flow_options {
     const char *names, *mask, *unit, *axes; /* see io_volume_options */
     double spacing[3], time_step, period;
     uint32_t seeds, seed, max_points;
-    double step, tolerance; /* ms, mm */
-    double threshold;       /* m/s; negative: none is given */
+    double at, step, tolerance; /* ms, ms, mm */
+    double threshold;           /* m/s; negative: none is given */
     const char *method, *span, *attributes;
     bool streamlines;
 } cli_flow_options;
@@ -46,11 +47,12 @@ typedef struct cli_options {
     cli_source *files; /* owned */
     uint32_t file_count;
     const char *scene, *out, *dump, *timings, *backend, *camera, *save_camera, *view;
-    const char *legend, *legend_title;       /* "off" or a side; NULL: name and unit */
-    const char *title, *note;                /* of a sheet */
-    uint32_t lines, frames, columns, widest; /* 0: not given */
+    const char *legend, *legend_title;            /* "off" or a side; NULL: name and unit */
+    const char *title, *note;                     /* of a sheet */
+    uint32_t lines, frames, fps, columns, widest; /* 0: not given */
     uint32_t size[2];
-    double time, background[4];
+    double time; /* ms; NaN: not given */
+    double background[4];
     bool ortho, json, backdrop, help;
     cli_flow_options flow;
     const char *flow_flag; /* the last flag in `flow` that was given, or NULL */

@@ -66,7 +66,8 @@ int cli_flow(const cli_options *options) {
     if (!cli_writable(options->out) ||
         !cli_read_volume(options, options->files, options->file_count, false, &volume))
         return CLI_FAILED;
-    bool ok = cli_trace(options, options->files[0].path, &volume, &lines);
+    const cli_source *last = &options->files[options->file_count - 1]; /* whose flags come last */
+    bool ok = cli_trace(options, last, options->files[0].path, &volume, &lines);
     if (ok) {
         ok = finish(options, &volume, &lines, now() - begin);
         io_lines_free(&lines);

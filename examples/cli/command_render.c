@@ -6,6 +6,7 @@
 #include "legend.h"
 #include "report.h"
 #include "session.h"
+#include "video.h"
 
 #include <stdio.h>
 #include <stdlib.h>
@@ -96,7 +97,8 @@ typedef struct surroundings {
     const cli_options *options;
     const cli_scene *scene;
     cli_context context;
-    float paper[4]; /* the background that was asked for */
+    float paper[4];   /* the background that was asked for */
+    cli_video *video; /* NULL: a file for each picture */
 } surroundings;
 
 static bool surround(const surroundings *around, picture *p) {
@@ -113,8 +115,11 @@ static bool write_picture(const char *path, const surroundings *around, cli_sess
     int channels = around->paper[3] < 1 ? 4 : 3;
     for (size_t i = 0; ok && channels == 3 && i < (size_t)p.width * p.height; i++)
         memmove(p.pixels + 3 * i, p.pixels + 4 * i, 3);
-    ok = ok && (image_write_png(path, p.width, p.height, p.pixels, channels, error) ||
-                cli_fail("%s", error));
+    if (ok && around->video)
+        ok = cli_video_add(around->video, p.pixels);
+    else if (ok)
+        ok = image_write_png(path, p.width, p.height, p.pixels, channels, error) ||
+             cli_fail("%s", error);
     picture_free(&p);
     return ok;
 }
@@ -139,17 +144,18 @@ static bool write_frame(const surroundings *around, cli_session *session, const 
 
 /* ---- all frames ------------------------------------------------------------------------- */
 
-/* With timings a first frame goes uncounted: it builds shaders and images. */
+/* Frame i of a sequence shows the first time plus i parts of the period. With timings a first frame
+ * goes uncounted: it builds shaders and images. */
 static bool render_frames(const surroundings *around, cli_session *session, cli_shot *shot) {
     const cli_options *options = around->options;
     const cli_scene *scene = around->scene;
     uint32_t count = options->frames ? options->frames : 1;
     uint32_t flags = options->timings ? LAO_FRAME_TIMINGS : 0;
-    float start = shot->time;
+    double start = (double)shot->time;
     cli_progress progress = {"rendering", options->out ? options->out : "", -1};
     bool ok = !flags || cli_session_render(session, shot, flags);
     for (uint32_t i = 0; ok && i < count; i++) {
-        shot->time = start + (float)((scene->beat[1] - scene->beat[0]) * i / count);
+        shot->time = (float)(start + scene->period * i / count);
         if (count > 1)
             cli_progress_show(&progress, i, count);
         ok = cli_session_render(session, shot, flags) &&
@@ -157,6 +163,19 @@ static bool render_frames(const surroundings *around, cli_session *session, cli_
     }
     cli_progress_end(&progress);
     return ok;
+}
+
+/* A video appears when all of its frames are in it, else not at all. */
+static bool render_all(surroundings *around, cli_session *session, cli_shot *shot) {
+    const cli_options *options = around->options;
+    cli_video video;
+    if (!cli_is_video(options->out))
+        return render_frames(around, session, shot);
+    if (!cli_video_open(&video, options->out, shot->width, shot->height,
+                        options->fps ? options->fps : 25))
+        return false;
+    around->video = &video;
+    return cli_video_close(&video, render_frames(around, session, shot));
 }
 
 static bool write_json(const cli_options *options, cli_session *session, const cli_shot *shot) {
@@ -183,6 +202,7 @@ static bool render(const cli_options *options, const cli_scene *scene) {
     surroundings around;
     around.options = options;
     around.scene = scene;
+    around.video = NULL;
     memcpy(around.paper, shot.background, sizeof around.paper);
     if (options->backdrop && scene->volume_count == 0)
         return cli_fail("--backdrop: shows what is behind the lines of a velocity volume or of "
@@ -193,7 +213,7 @@ static bool render(const cli_options *options, const cli_scene *scene) {
     bool ok = cli_context_make(scene, &shot, &around.context) &&
               cli_session_open(&session, options->backend, scene, &shot,
                                options->dump ? LAO_VIEW_KEEP_IMAGES : 0) &&
-              render_frames(&around, &session, &shot) && write_json(options, &session, &shot);
+              render_all(&around, &session, &shot) && write_json(options, &session, &shot);
     cli_session_close(&session);
     cli_context_free(&around.context);
     return ok;

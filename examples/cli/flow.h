@@ -14,9 +14,11 @@ bool cli_read_volume(const cli_options *options, const cli_source *sources, uint
                      bool guess, io_volume *out);
 
 /* Traces lines with the point attributes "time" (ms), "speed" (m/s) and those asked for; the
- * volume's warnings move to them. Lines of a single point are left out. volume->mask becomes where
- * it was traced. name: of the volume, for messages. False: reported. */
-bool cli_trace(const cli_options *options, const char *name, io_volume *volume, io_lines *out);
+ * volume's warnings move to them. source: thins the lines by its `every` and `min_length`; those of
+ * a single point are left out. volume->mask becomes where it was traced. name: of the volume, for
+ * messages. False: reported. */
+bool cli_trace(const cli_options *options, const cli_source *source, const char *name,
+               io_volume *volume, io_lines *out);
 
 /* The volume's arrays as a field of flow4d.h, borrowed. */
 struct flow4d_field cli_field_of(const io_volume *volume);

@@ -18,25 +18,34 @@ static bool on_progress(void *user, uint64_t done, uint64_t total) {
     return cli_interrupted();
 }
 
-bool cli_read_file(const cli_source *source, io_lines *out) {
+bool cli_read(const cli_source *source, unsigned wanted, io_contents *out) {
     cli_progress progress = {"reading", source->path, -1};
     io_options options;
     memset(&options, 0, sizeof options);
     options.every = source->every;
-    options.min_length = (float)source->min_length;
+    options.min_length = (float)fmax(source->min_length, 0);
     options.bundle = source->bundle;
+    options.unit = source->unit;
     options.progress = on_progress;
     options.user = &progress;
     io_error error;
-    bool ok = io_read_lines(source->path, &options, out, &error);
+    bool ok = io_read(source->path, wanted, &options, out, &error);
     cli_progress_end(&progress);
     if (!ok)
         return cli_interrupted() ? cli_go_on() : cli_fail("%s: %s", source->path, error.text);
     if (!cli_go_on()) {
-        io_lines_free(out);
+        io_contents_free(out);
         return false;
     }
     return true;
+}
+
+bool cli_read_file(const cli_source *source, io_lines *out) {
+    io_contents contents;
+    bool ok = cli_read(source, IO_LINES, &contents);
+    if (ok)
+        *out = contents.lines;
+    return ok;
 }
 
 /* ---- embedded scenes -------------------------------------------------------------------- */
@@ -121,12 +130,68 @@ static void find_times(cli_set *set, cli_scene *out) {
     }
 }
 
+static int by_value(const void *a, const void *b) {
+    float x = *(const float *)a, y = *(const float *)b;
+    return (x > y) - (x < y);
+}
+
+/* Lawonn 2014, 5.2: beta is twice the median of the lines' last times, in ms^2; 0: no line has one.
+ */
+static float usual_beta(const cli_set *set) {
+    const io_lines *lines = &set->lines;
+    float *last = cli_new(lines->line_count, sizeof *last), beta = 0;
+    uint32_t count = 0;
+    for (uint32_t i = 0; last && i < lines->line_count; i++) {
+        float most = -INFINITY;
+        for (uint32_t k = lines->offsets[i]; k < lines->offsets[i + 1]; k++)
+            most = isfinite(set->times[k]) && set->times[k] > most ? set->times[k] : most;
+        if (isfinite(most))
+            last[count++] = most;
+    }
+    if (count > 0) {
+        qsort(last, count, sizeof *last, by_value);
+        beta = last[count / 2] + last[(count - 1) / 2];
+    }
+    free(last);
+    return beta;
+}
+
+/* What --time and --frames ask of the sets: those that have times show trails, unless told how. */
+static bool follow_time(const cli_options *options, cli_scene *scene) {
+    bool asked = !isnan(options->time) || options->frames > 0, any = false;
+    for (uint32_t i = 0; i < scene->count; i++) {
+        cli_set *set = &scene->sets[i];
+        lao_settings *s = &set->settings;
+        bool told = (s->set & LAO_SET(trail)) || s->trail > 0;
+        const lao_setting_row *beta = &lao_lines_module()->settings[LAO_SETTING_ID_highlight_beta];
+        any = any || set->times;
+        if (told && s->trail > 0 && !set->times)
+            return cli_fail("%s: trail needs the point array 'time' (ms), which this set has not",
+                            set->name);
+        if (asked && !told && set->times)
+            s->trail = LAO_TRAIL_TAPER;
+        if (s->trail == LAO_TRAIL_HIGHLIGHT && !(s->highlight_beta > 0))
+            s->highlight_beta = fminf(fmaxf(usual_beta(set), beta->minimum), beta->maximum);
+        if (!(scene->period > 0))
+            scene->period = (double)s->period;
+    }
+    if (!(scene->period > 0))
+        scene->period = scene->beat[1] - scene->beat[0];
+    return any || !asked ||
+           cli_fail("%s: %s needs the point array 'time' (ms), which no set has",
+                    scene->sets[0].name, isnan(options->time) ? "--frames" : "--time");
+}
+
 static bool load_traced(const cli_options *options, const cli_source *first, uint32_t count,
-                        io_lines *lines, cli_scene *out) {
+                        cli_set *set, cli_scene *out) {
     io_volume volume;
+    lao_settings *s = &set->settings;
     if (!cli_read_volume(options, first, count, false, &volume))
         return false;
-    bool ok = cli_trace(options, first->path, &volume, lines);
+    bool ok = cli_trace(options, set->source, set->name, &volume, &set->lines);
+    if (!(s->set & LAO_SET(period)) && !(s->period > 0)) { /* its trails repeat as the blood does */
+        s->period = (float)volume.period;
+    }
     if (ok && options->backdrop) {
         flow4d_field field = cli_field_of(&volume);
         ok = cli_context_keep(out, &field);
@@ -145,7 +210,7 @@ static bool load_set(const cli_options *options, const cli_source *first, uint32
     set->name = first->path;
     set->settings = source->settings;
     out->count++; /* freed with the scene from here on */
-    bool ok = volumes        ? load_traced(options, first, volumes, &set->lines, out)
+    bool ok = volumes        ? load_traced(options, first, volumes, set, out)
               : source->path ? cli_read_file(source, &set->lines)
                              : load_embedded(options, set, out);
     if (!ok)
@@ -177,12 +242,12 @@ bool cli_scene_load(const cli_options *options, cli_scene *out) {
     }
     if (ok && !any && options->flow_flag)
         ok = cli_fail("%s: is for velocity volumes, and no FILE is one", options->flow_flag);
-    if (!ok || !cli_colour(&scene)) {
+    if (scene.beat[0] > scene.beat[1])
+        scene.beat[0] = scene.beat[1] = 0;
+    if (!ok || !follow_time(options, &scene) || !cli_colour(&scene)) {
         cli_scene_free(&scene);
         return false;
     }
-    if (scene.beat[0] > scene.beat[1])
-        scene.beat[0] = scene.beat[1] = 0;
     if (options->view)
         camera_view(options->view, scene.direction, scene.up);
     *out = scene;

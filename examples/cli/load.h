@@ -3,7 +3,7 @@
 #define LINEAO_CLI_LOAD_H
 
 #include "arguments.h"
-#include "io.h"
+#include "io_read.h"
 
 typedef struct cli_set {
     const cli_source *source;
@@ -34,6 +34,7 @@ typedef struct cli_scene {
     cli_volume *volumes;       /* owned; none unless --backdrop asks for them */
     uint32_t volume_count;
     double beat[2]; /* first and last time (ms); equal: none */
+    double period;  /* ms: of the first set that repeats, else from first to last time */
 } cli_scene;
 
 /* Loads what the options name. False: reported, nothing to free. */
@@ -45,6 +46,8 @@ void cli_scene_warn(const cli_scene *scene);
 
 /* Reads a file with a progress bar; Ctrl-C cancels. False: reported. */
 bool cli_read_file(const cli_source *source, io_lines *out);
+/* The same for any kinds of content (IO_LINES, ...). */
+bool cli_read(const cli_source *source, unsigned wanted, io_contents *out);
 
 /* Colours the sets as their sources say. Sets that are coloured by the same attribute, map and
  * range share one range, so that a colour is one value in the whole picture. False: reported. */

@@ -41,9 +41,12 @@ static const char flow_about[] =
     "any number of threads (LINEAO_THREADS; as many as the machine has).\n";
 
 static const command_row commands[] = {
-    {"info", CLI_INFO, cli_info, "FILE... [--json]", "what is in line files and velocity volumes",
+    {"info", CLI_INFO, cli_info, "FILE... [--json]",
+     "what is in files of lines, vessel trees, meshes and velocity volumes",
      "  lineao info bundle.trk                 lines, points, box, attributes, groups\n"
      "  lineao info *.trx --json               the same for scripts\n"
+     "  lineao info brain.swc aorta.stl        nodes, roots, radii; triangles, holes\n"
+     "  lineao info pulmonary.vtp --unit cm    for files that tell no unit\n"
      "  lineao info flow.h5                    a volume: voxels, frames, period, speeds, mask\n",
      NULL},
     {"render", CLI_RENDER, cli_render, "[FILE [FLAG...]]... -o out.png",
@@ -52,6 +55,8 @@ static const command_row commands[] = {
      "  lineao render bundle.trk -o out.png --width 0.3 --view sagittal\n"
      "  lineao render a.trk --color '#d08040' b.tck --width 1 -o two.png   each FILE its own look\n"
      "  lineao render bundle.trk --color fa --colormap inferno -o fa.png\n"
+     "  lineao render flow.vtp --time 120 -o systole.png               trails around 120 ms\n"
+     "  lineao render flow.vtp --frames 200 --period 833 -o beat.mp4   one heart beat, in ffmpeg\n"
      "  lineao render --preset classic --strength 2 -o classic.png     settings are flags\n"
      "  lineao render --ssaa 1 --dump frame.exr --backend vk           every image as numbers\n"
      "  lineao render flow.h5 --color speed --seeds 5000 -o flow.png   traces the volume first\n",
@@ -63,12 +68,12 @@ static const command_row commands[] = {
      NULL},
     {"flow", CLI_FLOW, cli_flow, "VOLUME... -o lines.vtp [--json]",
      "trace pathlines through a velocity volume",
-     "  lineao flow aorta.h5 -o aorta.vtp                      30000 lines inside its mask\n"
+     "  lineao flow aorta.h5 -o aorta.vtp                      lines inside its mask\n"
      "  lineao flow 4d.nii.gz --mask vessel.nii.gz -o 4d.trk   the mask from a file of its own\n"
      "  lineao flow u.nii v.nii w.nii --unit cm/s -o uvw.tck   one file for each component\n"
      "  lineao flow t_*.vti --period 800 -o beat.vtp           one file for each time step\n"
      "  lineao flow 4d.h5 --names vx,vy,vz,seg --spacing 2,2,3 --time-step 40 -o named.vtp\n"
-     "  lineao flow 4d.h5 --streamlines --time 120 -o peak.vtp\n"
+     "  lineao flow 4d.h5 --streamlines --at 120 -o peak.vtp\n"
      "  lineao render aorta.vtp --color speed -o aorta.png     look at them\n",
      flow_about},
     {"sheet", CLI_SHEET, cli_sheet_command, "[CAPTION=]FILE.png... -o out.png",
@@ -99,9 +104,9 @@ static void print_help(void) {
     printf("\nExamples\n");
     for (int i = 0; i < COMMANDS; i++)
         printf("%s", commands[i].examples);
-    printf("\nFiles: lines .trk .tck .trx .tt .vtk .vtp, volumes .nii .vti .vtk .h5; but for .h5 "
-           "also\n"
-           "gzip-compressed.\n"
+    printf("\nFiles, but for .h5 also gzip-compressed: lines .trk .tck .trx .tt .vtk .vtp .obj;\n"
+           "vessel trees .swc .gxl .h5 .vmv .vtk .vtp; meshes .stl .ply .obj .vtk .vtp;\n"
+           "velocity volumes .nii .vti .vtk .h5.\n"
            "Flags of a command: lineao COMMAND --help\n");
 }
 

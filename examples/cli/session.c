@@ -102,6 +102,7 @@ static bool upload(cli_session *session, const cli_scene *scene) {
     for (uint32_t i = 0; session->sets && i < scene->count; i++) {
         const cli_set *set = &scene->sets[i];
         lao_lines_desc desc;
+        memset(&session->sets[i], 0, sizeof session->sets[i]);
         memset(&desc, 0, sizeof desc);
         desc.line_count = set->lines.line_count;
         desc.point_count = set->lines.point_count;

@@ -51,7 +51,9 @@ bool cli_shot_make(const cli_options *options, const cli_scene *scene, cli_shot 
     memset(out, 0, sizeof *out);
     out->width = options->size[0];
     out->height = options->size[1];
-    out->time = (float)options->time;
+    out->time = (float)(!isnan(options->time) ? options->time
+                        : options->frames     ? scene->beat[0]
+                                              : 0);
     for (int k = 0; k < 4; k++)
         out->background[k] = (float)options->background[k];
     find_sphere(scene, out->sphere);

@@ -1,4 +1,5 @@
-/* Line files: reads .trk .tck .trx .tt .vtk .vtp, each also gzip-compressed; writes .tck .trk .vtp.
+/* Line files: reads .trk .tck .trx .tt .vtk .vtp .obj, each also gzip-compressed; writes .tck .trk
+ * .vtp. Vessel trees: io_tree.h; meshes: io_mesh.h; whatever a file holds: io_read.h.
  *
  *     io_lines lines = {0};
  *     io_error error;
@@ -36,7 +37,7 @@ typedef struct io_group {
 /* Lines with at least one point each, in the order of the file. All zero = no lines; valid for
  * every function here. */
 typedef struct io_lines {
-    /* "trk", "tck", "trx", "tt", "vtk" or "vtp": static text; NULL when all is zero */
+    /* "trk", "tck", "trx", "tt", "vtk", "vtp" or "obj": static text; NULL when all is zero */
     const char *format;
     /* "mm": static text. VTK files define no unit and are taken as mm */
     const char *unit;
@@ -71,12 +72,15 @@ typedef struct io_error {
  * the read. */
 typedef bool (*io_progress)(void *user, uint64_t done, uint64_t total);
 
-/* All zero = read everything. The filters work in this order: bundle, min_length, every. */
+/* All zero = read everything. The filters (of lines) work in this order: bundle, min_length,
+ * every. */
 typedef struct io_options {
     uint32_t every;         /* keep each n-th line, from the first on; 0 and 1 = all */
     float min_length;       /* mm; drop lines shorter than this; 0 = none */
     const char *bundle;     /* keep this group only; NULL or "" = all; an unknown name fails */
     bool trk_no_half_voxel; /* TRK with whole voxel centres, as DSI Studio writes them */
+    const char *unit;       /* of trees and meshes: "mm", "cm", "um", "nm" or "m"; NULL = as told or
+                               guessed (io_tree.h, io_mesh.h); an unknown one fails */
     io_progress progress;   /* NULL = none */
     void *user;             /* handed to progress */
 } io_options;

@@ -12,9 +12,13 @@ static size_t line_begin(const io_reader *r, size_t line) {
     return line ? r->line_ends[line - 1] : 0;
 }
 
-bool io_add_point(io_reader *r, const double p[3], size_t row) {
+bool io_is_position(const double p[3]) {
     const double huge = 1e30; /* squares of it still fit a double, and it fits a float */
-    if (!(fabs(p[0]) < huge && fabs(p[1]) < huge && fabs(p[2]) < huge)) {
+    return fabs(p[0]) < huge && fabs(p[1]) < huge && fabs(p[2]) < huge;
+}
+
+bool io_add_point(io_reader *r, const double p[3], size_t row) {
+    if (!io_is_position(p)) {
         r->dropped_points++;
         return true;
     }
@@ -64,25 +68,35 @@ bool io_end_line(io_reader *r, size_t row, size_t done, size_t total) {
     return r->line_count % 4096 || io_tick(r, done, total);
 }
 
+bool io_next_cell(io_reader *r, const io_cells *cells, size_t number, const char *what, size_t *at,
+                  size_t *begin, size_t *end) {
+    *begin = *at;
+    if (cells->counted) {
+        size_t length;
+        if (*at >= cells->index.count || !io_view_index(&cells->index, *at, &length) ||
+            length > cells->index.count - *at - 1)
+            return io_fail(r,
+                           "%s %zu of %zu reaches beyond the %zu numbers of its list; the file is "
+                           "damaged",
+                           what, number + 1, cells->count, cells->index.count);
+        ++*begin;
+        *end = *begin + length;
+    } else if (!io_view_index(&cells->ends, number, end) || *end < *at ||
+               *end > cells->index.count) {
+        return io_fail(r, "%s %zu of %zu has a broken end: its offset must be in [%zu, %zu]", what,
+                       number + 1, cells->count, *at, cells->index.count);
+    }
+    *at = *end;
+    return true;
+}
+
 bool io_add_cells(io_reader *r, const io_view *points, const io_cells *cells, size_t first_row) {
-    for (size_t i = 0, at = 0; i < cells->count; i++) {
-        size_t end;
-        if (cells->counted) {
-            size_t length;
-            if (at >= cells->index.count || !io_view_index(&cells->index, at, &length) ||
-                length > cells->index.count - at - 1)
-                return io_fail(r,
-                               "line %zu of %zu reaches beyond the %zu numbers of its list; the "
-                               "file is damaged",
-                               i + 1, cells->count, cells->index.count);
-            end = ++at + length;
-        } else if (!io_view_index(&cells->ends, i, &end) || end < at || end > cells->index.count) {
-            return io_fail(r, "line %zu of %zu has a broken end: its offset must be in [%zu, %zu]",
-                           i + 1, cells->count, at, cells->index.count);
-        }
-        for (; at < end; at++) {
+    for (size_t i = 0, at = 0, k, end; i < cells->count; i++) {
+        if (!io_next_cell(r, cells, i, "line", &at, &k, &end))
+            return false;
+        for (; k < end; k++) {
             size_t point;
-            if (!io_view_index(&cells->index, at, &point) || point >= points->count)
+            if (!io_view_index(&cells->index, k, &point) || point >= points->count)
                 return io_fail(r, "line %zu uses a point that is not one of the %zu in the file",
                                i + 1, points->count);
             double p[3];
@@ -139,9 +153,8 @@ static bool pad_column(io_reader *r, io_column *column, size_t rows) {
     return true;
 }
 
-/* For what a batch added: lines or points begin .. end - 1, whose rows are in `rows`. */
-static bool attach(io_reader *r, io_columns *columns, io_text name, const io_view *view,
-                   const uint32_t *rows, size_t begin, size_t end, size_t base, const char *what) {
+bool io_attach_rows(io_reader *r, io_columns *columns, io_text name, const io_view *view,
+                    const uint32_t *rows, size_t begin, size_t end, size_t base, const char *what) {
     char *label = io_copy_text(r, io_text_trim(name));
     if (!label)
         return false;
@@ -152,7 +165,7 @@ static bool attach(io_reader *r, io_columns *columns, io_text name, const io_vie
         return io_warn(r, "the %s array '%.64s' is left out: only %d are read", what, label,
                        MOST_COLUMNS);
     for (size_t i = begin; i < end; i++)
-        if (rows[i] - base >= view->count)
+        if ((rows ? rows[i] : i) - base >= view->count)
             return io_warn(r, "the %s array '%.64s' has only %zu rows and is left out", what, label,
                            view->count);
     io_column *column = column_named(r, columns, label, view->components, begin);
@@ -166,18 +179,19 @@ static bool attach(io_reader *r, io_columns *columns, io_text name, const io_vie
     column->rows = end;
     for (size_t i = begin; i < end; i++)
         for (uint32_t k = 0; k < view->components; k++)
-            data[i * view->components + k] = to_float(io_view_real(view, rows[i] - base, k));
+            data[i * view->components + k] =
+                to_float(io_view_real(view, (rows ? rows[i] : i) - base, k));
     return true;
 }
 
 bool io_attach_points(io_reader *r, io_text name, const io_view *view) {
-    return attach(r, &r->point_columns, name, view, r->point_rows, r->batch_points, r->point_count,
-                  0, "point");
+    return io_attach_rows(r, &r->point_columns, name, view, r->point_rows, r->batch_points,
+                          r->point_count, 0, "point");
 }
 
 bool io_attach_lines(io_reader *r, io_text name, const io_view *view) {
-    return attach(r, &r->line_columns, name, view, r->line_rows, r->batch_lines, r->line_count,
-                  r->line_row_base, "line");
+    return io_attach_rows(r, &r->line_columns, name, view, r->line_rows, r->batch_lines,
+                          r->line_count, r->line_row_base, "line");
 }
 
 void io_next_batch(io_reader *r) {
@@ -311,11 +325,11 @@ char *io_take_text(io_reader *r, const char *text) {
 /* An axis is moved to its middle when that is farther away than the data is wide: then the floats
  * get finer, and coordinates that were floats stay exact, for the moved ones are smaller multiples
  * of the same unit. */
-static void find_origin(io_lines *lines) {
+void io_find_origin(const double bounds[2][3], double origin[3]) {
     for (int axis = 0; axis < 3; axis++) {
-        double low = lines->bounds[0][axis], high = lines->bounds[1][axis];
+        double low = bounds[0][axis], high = bounds[1][axis];
         double middle = low + (high - low) / 2;
-        lines->origin[axis] = fabs(middle) > high - low ? floor(middle + 0.5) : 0;
+        origin[axis] = fabs(middle) > high - low ? floor(middle + 0.5) : 0;
     }
 }
 
@@ -425,6 +439,24 @@ static bool warn_of_content(io_reader *r, const io_lines *lines) {
     return true;
 }
 
+bool io_take_columns(io_reader *r, const io_columns *columns, size_t rows, uint32_t *count,
+                     io_attribute **out) {
+    if (columns->count && !(*out = io_take_memory(r, columns->count, sizeof **out)))
+        return false;
+    for (size_t i = 0; i < columns->count; i++) {
+        io_column *column = &columns->items[i];
+        io_attribute *attribute = &(*out)[(*count)++];
+        size_t width = attribute->components = column->components;
+        attribute->name = io_take_text(r, column->name);
+        attribute->data = io_take_memory(r, rows, width * sizeof *attribute->data);
+        if (!attribute->name || !attribute->data || !pad_column(r, column, rows))
+            return false;
+        if (rows)
+            memcpy(attribute->data, column->data, rows * width * sizeof *attribute->data);
+    }
+    return true;
+}
+
 bool io_take_warnings(io_reader *r, char ***warnings, uint32_t *count) {
     if (r->warning_count && !(*warnings = io_take_memory(r, r->warning_count, sizeof **warnings)))
         return false;
@@ -445,7 +477,7 @@ bool io_finish(io_reader *r, const char *format, io_lines *out) {
     if (!place || !io_tick(r, 0, 1) || !filter(r, place, &line_count, &point_count))
         return false;
     find_bounds(r, place, &lines);
-    find_origin(&lines);
+    io_find_origin((const double(*)[3])lines.bounds, lines.origin);
     if (copy_geometry(r, place, line_count, point_count, &lines) &&
         copy_columns(r, &r->point_columns, place, true, &lines, &lines.point_attribute_count,
                      &lines.point_attributes) &&
@@ -460,7 +492,7 @@ bool io_finish(io_reader *r, const char *format, io_lines *out) {
     return false;
 }
 
-static void free_attributes(io_attribute *attributes, uint32_t count) {
+void io_free_attributes(io_attribute *attributes, uint32_t count) {
     for (uint32_t i = 0; i < count; i++) {
         free(attributes[i].name);
         free(attributes[i].data);
@@ -468,20 +500,24 @@ static void free_attributes(io_attribute *attributes, uint32_t count) {
     free(attributes);
 }
 
+void io_free_warnings(char **warnings, uint32_t count) {
+    for (uint32_t i = 0; i < count; i++)
+        free(warnings[i]);
+    free(warnings);
+}
+
 void io_lines_free(io_lines *lines) {
     if (!lines)
         return;
     free(lines->offsets);
     free(lines->points);
-    free_attributes(lines->point_attributes, lines->point_attribute_count);
-    free_attributes(lines->line_attributes, lines->line_attribute_count);
+    io_free_attributes(lines->point_attributes, lines->point_attribute_count);
+    io_free_attributes(lines->line_attributes, lines->line_attribute_count);
     for (uint32_t i = 0; i < lines->group_count; i++) {
         free(lines->groups[i].name);
         free(lines->groups[i].lines);
     }
     free(lines->groups);
-    for (uint32_t i = 0; i < lines->warning_count; i++)
-        free(lines->warnings[i]);
-    free(lines->warnings);
+    io_free_warnings(lines->warnings, lines->warning_count);
     memset(lines, 0, sizeof *lines);
 }

@@ -50,7 +50,6 @@ void io_field_packed(io_field *field, const io_grid *grid);
 io_match io_sniff_nifti(const io_cursor *bytes);
 io_match io_sniff_vti(const io_cursor *bytes);
 io_match io_sniff_points(const io_cursor *bytes);
-io_match io_sniff_hdf5(const io_cursor *bytes);
 
 /* Each begins with a zeroed grid whose to_mm is the identity. */
 bool io_open_nifti(io_reader *reader, io_cursor *bytes, io_grid *grid);

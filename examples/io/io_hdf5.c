@@ -1,38 +1,22 @@
 /* HDF5 as 4DFlowNet lays it out: data sets [x,y,z], [t,x,y,z] or [t,x,y,z,3], and dx, the size of a
  * voxel in mm. What MATLAB wrote (-v7.3) has its axes reversed, which its attributes tell. */
-#define H5_USE_110_API
+#include "io_hdf5.h"
+
 #include "io_grid.h"
 
 #include <string.h>
 
-static const char signature[] = "\x89HDF\r\n\x1A\n";
-
-/* At byte 0, 512, 1024, 2048 ...: files may begin with a block of the user's. */
 io_match io_sniff_hdf5(const io_cursor *bytes) {
-    for (size_t at = 0; at + 8 <= bytes->size; at = at ? 2 * at : 512) {
-        if (!memcmp(bytes->bytes + at, signature, 8))
-            return IO_YES;
-        if (at > SIZE_MAX / 2)
-            break;
-    }
-    return IO_NO;
+    return io_is_hdf5(bytes) && !io_is_section_graph(bytes) ? IO_YES : IO_NO;
 }
 
 #ifdef LINEAO_HAVE_HDF5
 #include <errno.h>
-#include <fcntl.h>
-#include <hdf5.h>
-#include <poll.h>
-#include <signal.h>
 #include <stdlib.h>
-#include <sys/resource.h>
 #include <sys/socket.h>
-#include <sys/wait.h>
-#include <unistd.h>
 
-/* libhdf5 keeps state, prints, and crashes on some damaged files. It therefore runs in a process of
- * its own, forked for one file, which first sends an `opening` and its entries, and then, for every
- * index it is sent, an `answer` and the floats of that data set. */
+/* The child first sends an `opening` and its entries, and then, for every index it is sent, an
+ * `answer` and the floats of that data set. */
 
 enum { NAME_SIZE = 256 };
 
@@ -57,20 +41,6 @@ typedef struct opening {
 
 /* ---- Talking --------------------------------------------------------------------------------- */
 
-static bool send_all(int socket, const void *data, size_t size) {
-    const char *at = data;
-    while (size) {
-        ssize_t sent = send(socket, at, size < (1u << 20) ? size : 1u << 20, MSG_NOSIGNAL);
-        if (sent < 0 && errno == EINTR)
-            continue;
-        if (sent <= 0)
-            return false;
-        at += sent;
-        size -= (size_t)sent;
-    }
-    return true;
-}
-
 /* In the child, where nobody can cancel. */
 static bool receive_index(int socket, uint64_t *index) {
     ssize_t got;
@@ -78,29 +48,6 @@ static bool receive_index(int socket, uint64_t *index) {
         got = recv(socket, index, sizeof *index, MSG_WAITALL);
     while (got < 0 && errno == EINTR);
     return got == (ssize_t)sizeof *index;
-}
-
-/* Waits for the child, letting the user cancel. */
-static bool receive(io_reader *r, int socket, void *data, size_t size) {
-    char *at = data;
-    size_t total = size;
-    while (size) {
-        struct pollfd wait = {socket, POLLIN, 0};
-        int ready = poll(&wait, 1, 100);
-        if (!io_tick(r, total - size, total))
-            return false;
-        if (ready <= 0)
-            continue;
-        ssize_t got = recv(socket, at, size < (1u << 20) ? size : 1u << 20, 0);
-        if (got < 0 && errno == EINTR)
-            continue;
-        if (got <= 0)
-            return io_fail(r, "is damaged: libhdf5 crashes on it or does not come to an end; copy "
-                              "the file again");
-        at += got;
-        size -= (size_t)got;
-    }
-    return true;
 }
 
 /* ---- Child: data sets ------------------------------------------------------------------------ */
@@ -246,15 +193,6 @@ static void find_spacing(hid_t file, opening *out) {
 
 /* ---- Child: serving -------------------------------------------------------------------------- */
 
-static hid_t open_image(const io_cursor *bytes) {
-    hid_t list = H5Pcreate(H5P_FILE_ACCESS), file = -1;
-    /* libhdf5 copies the bytes; its older interface lacks the const */
-    if (list >= 0 && H5Pset_fapl_core(list, 1 << 16, 0) >= 0 &&
-        H5Pset_file_image(list, (void *)(uintptr_t)bytes->bytes, bytes->size) >= 0)
-        file = H5Fopen("memory", H5F_ACC_RDONLY, list);
-    return file;
-}
-
 static void fail_answer(answer *out, const char *what) {
     out->done = false;
     memcpy(out->error, what, strlen(what) + 1);
@@ -275,8 +213,8 @@ static bool send_opening(int socket, hid_t file, search *s) {
             fail_answer(&o->answer, "needs more memory than the system gives");
     }
     o->entries = s->count;
-    return send_all(socket, o, sizeof *o) && o->answer.done &&
-           send_all(socket, s->entries, (size_t)s->count * sizeof *s->entries);
+    return io_hdf5_send(socket, o, sizeof *o) && o->answer.done &&
+           io_hdf5_send(socket, s->entries, (size_t)s->count * sizeof *s->entries);
 }
 
 static bool send_values(int socket, hid_t file, const search *s, const entry *wanted) {
@@ -296,40 +234,21 @@ static bool send_values(int socket, hid_t file, const search *s, const entry *wa
         fail_answer(&a, "its values are in another file; write them into this one");
     else if (H5Dread(set, H5T_NATIVE_FLOAT, H5S_ALL, H5S_ALL, H5P_DEFAULT, values) < 0)
         fail_answer(&a, "its values cannot be unpacked; copy the file again");
-    bool sent = send_all(socket, &a, sizeof a) &&
-                (!a.done || send_all(socket, values, count * sizeof *values));
+    bool sent = io_hdf5_send(socket, &a, sizeof a) &&
+                (!a.done || io_hdf5_send(socket, values, count * sizeof *values));
     free(values);
     if (set >= 0)
         H5Dclose(set);
     return sent;
 }
 
-/* A crash ends the child alone, in silence; an endless loop ends too. */
-static void become_child(size_t size) {
-    static const int signals[] = {SIGSEGV, SIGBUS, SIGFPE, SIGILL, SIGABRT};
-    struct rlimit processor = {60 + (rlim_t)(size >> 20), 60 + (rlim_t)(size >> 20)};
-    struct rlimit none = {0, 0};
-    for (size_t i = 0; i < sizeof signals / sizeof signals[0]; i++)
-        signal(signals[i], SIG_DFL);
-    setrlimit(RLIMIT_CPU, &processor);
-    setrlimit(RLIMIT_CORE, &none);
-    int silence = open("/dev/null", O_WRONLY);
-    if (silence >= 0) {
-        dup2(silence, STDOUT_FILENO);
-        dup2(silence, STDERR_FILENO);
-    }
-}
-
-static void serve(int socket, const io_cursor *bytes) {
+static void serve(int socket, hid_t file) {
     opening o;
     search s;
     uint64_t index;
-    become_child(bytes->size);
     memset(&o, 0, sizeof o);
     memset(&s, 0, sizeof s);
     s.opening = &o;
-    H5Eset_auto2(H5E_DEFAULT, NULL, NULL);
-    hid_t file = open_image(bytes);
     if (send_opening(socket, file, &s))
         while (receive_index(socket, &index) && index < s.count)
             if (!send_values(socket, file, &s, &s.entries[index]))
@@ -338,47 +257,14 @@ static void serve(int socket, const io_cursor *bytes) {
 
 /* ---- Parent ---------------------------------------------------------------------------------- */
 
-typedef struct hdf5 {
-    int socket;
-    pid_t child;
-} hdf5;
-
 static void close_child(io_grid *grid) {
-    hdf5 *h = grid->file;
-    close(h->socket);
-    kill(h->child, SIGKILL);
-    while (waitpid(h->child, NULL, 0) < 0 && errno == EINTR) {
-    }
-}
-
-static bool start(io_reader *r, const io_cursor *bytes, io_grid *grid) {
-    int sockets[2];
-    hdf5 *h = io_alloc(r, 1, sizeof *h);
-    if (!h)
-        return false;
-    if (socketpair(AF_UNIX, SOCK_STREAM, 0, sockets))
-        return io_fail(r, "cannot be read: %s", strerror(errno));
-    h->child = fork();
-    if (h->child == 0) {
-        close(sockets[0]);
-        serve(sockets[1], bytes);
-        _exit(0);
-    }
-    close(sockets[1]);
-    h->socket = sockets[0];
-    if (h->child < 0) {
-        close(sockets[0]);
-        return io_fail(r, "cannot be read: %s", strerror(errno));
-    }
-    grid->file = h;
-    grid->close = close_child;
-    return true;
+    io_hdf5_stop(grid->file);
 }
 
 /* Floats are in this machine's order; MATLAB's arrays have x fastest, others component, z, y, x. */
 static bool load(io_reader *r, io_grid *grid, io_field *field) {
     static const int forward[5] = {3, 2, 1, 0, 4}, matlab[5] = {0, 1, 2, 4, 3};
-    hdf5 *h = grid->file;
+    const io_hdf5_child *h = grid->file;
     const entry *e = (const entry *)(const void *)field->place;
     uint64_t index = (uint64_t)(field - grid->fields);
     size_t size[5] = {grid->size[0], grid->size[1], grid->size[2], field->components,
@@ -389,9 +275,9 @@ static bool load(io_reader *r, io_grid *grid, io_field *field) {
         return io_fail(r, "has a data set '%.64s' whose size overflows", field->name);
     float *values = io_alloc(r, io_grid_voxels(grid),
                              (size_t)field->frames * field->components * sizeof *values);
-    if (!values || !send_all(h->socket, &index, sizeof index))
+    if (!values || !io_hdf5_send(h->socket, &index, sizeof index))
         return values && io_fail(r, "is damaged: libhdf5 crashes on it; copy the file again");
-    if (!receive(r, h->socket, &a, sizeof a))
+    if (!io_hdf5_receive(r, h, &a, sizeof a))
         return false;
     a.error[sizeof a.error - 1] = '\0';
     if (!a.done)
@@ -405,13 +291,13 @@ static bool load(io_reader *r, io_grid *grid, io_field *field) {
     field->type = IO_F32;
     field->big = native.big;
     field->bytes = (const uint8_t *)values;
-    return receive(r, h->socket, values, stride);
+    return io_hdf5_receive(r, h, values, stride);
 }
 
 static bool take_entries(io_reader *r, io_grid *grid, const opening *o) {
-    hdf5 *h = grid->file;
+    const io_hdf5_child *h = grid->file;
     entry *entries = io_alloc(r, (size_t)o->entries, sizeof *entries);
-    if (!entries || !receive(r, h->socket, entries, (size_t)o->entries * sizeof *entries))
+    if (!entries || !io_hdf5_receive(r, h, entries, (size_t)o->entries * sizeof *entries))
         return false;
     for (size_t i = 0; i < o->entries; i++) {
         entry *e = &entries[i];
@@ -431,7 +317,12 @@ static bool take_entries(io_reader *r, io_grid *grid, const opening *o) {
 
 bool io_open_hdf5(io_reader *r, io_cursor *bytes, io_grid *grid) {
     opening o;
-    if (!start(r, bytes, grid) || !receive(r, ((hdf5 *)grid->file)->socket, &o, sizeof o))
+    io_hdf5_child *h = io_alloc(r, 1, sizeof *h);
+    if (!h || !io_hdf5_start(r, bytes, serve, h))
+        return false;
+    grid->file = h;
+    grid->close = close_child;
+    if (!io_hdf5_receive(r, h, &o, sizeof o))
         return false;
     o.answer.error[sizeof o.answer.error - 1] = '\0';
     if (!o.answer.done)

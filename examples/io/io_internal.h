@@ -6,7 +6,7 @@
 #ifndef LINEAO_IO_INTERNAL_H
 #define LINEAO_IO_INTERNAL_H
 
-#include "io.h"
+#include "io_read.h"
 
 #include <stdio.h>
 
@@ -114,9 +114,16 @@ typedef struct io_bundle {
     size_t count, capacity;
 } io_bundle;
 
+typedef struct io_graph io_graph;     /* io_graph.h: a vessel tree being read */
+typedef struct io_surface io_surface; /* io_surface.h: a mesh being read */
+
 typedef struct io_reader {
     const io_options *options; /* never NULL */
     io_error *error;
+    unsigned wanted; /* kinds of content (io_read.h) to look for; never 0 */
+    unsigned found;  /* kinds that are there; readers of one kind leave it alone */
+    io_graph *graph;
+    io_surface *surface;
     io_block *blocks;
     size_t allocated, limit; /* bytes */
     uint64_t step;           /* of progress: 0 unpacking, 1 reading, 2 finishing */
@@ -179,6 +186,10 @@ bool io_end_line(io_reader *reader, size_t row, size_t done, size_t total);
  * too many components are left out with a warning. */
 bool io_attach_points(io_reader *reader, io_text name, const io_view *view);
 bool io_attach_lines(io_reader *reader, io_text name, const io_view *view);
+/* The same for any columns: rows[i] - base is the row of item i in the view, for the items begin ..
+ * end - 1; rows NULL: i itself. what: "point", for messages. */
+bool io_attach_rows(io_reader *reader, io_columns *columns, io_text name, const io_view *view,
+                    const uint32_t *rows, size_t begin, size_t end, size_t base, const char *what);
 /* Begins the next batch (piece of a file): rows count from 0 again. */
 void io_next_batch(io_reader *reader);
 /* Puts a line (by its row) into a group; the group is made at first use. */
@@ -190,8 +201,18 @@ void *io_take_memory(io_reader *reader, size_t count, size_t size);
 char *io_take_text(io_reader *reader, const char *text);
 /* The warnings for a result; *count counts what is to be freed, also on failure. */
 bool io_take_warnings(io_reader *reader, char ***warnings, uint32_t *count);
-/* Filters, centres and hands everything over. */
+/* Filters, centres and hands the lines over. */
 bool io_finish(io_reader *reader, const char *format, io_lines *out);
+
+/* Columns for a result, of that many rows. */
+bool io_take_columns(io_reader *reader, const io_columns *columns, size_t rows, uint32_t *count,
+                     io_attribute **out);
+void io_free_attributes(io_attribute *attributes, uint32_t count);
+void io_free_warnings(char **warnings, uint32_t count);
+/* What is taken off coordinates with these bounds before they become floats (io_lines.origin). */
+void io_find_origin(const double bounds[2][3], double origin[3]);
+/* Are these coordinates that can be worked with? */
+bool io_is_position(const double position[3]);
 
 /* Cells of a VTK data set: counted = the numbers n i0 .. in-1 follow each other in `index`;
  * otherwise cell i has the indices from ends[i - 1] (0 for the first) up to ends[i]. */
@@ -200,9 +221,30 @@ typedef struct io_cells {
     io_view index, ends;
     bool counted;
 } io_cells;
+/* The range of indices of the next cell, begin = *at .. end - 1; *at moves behind it. number: of
+ * the cell, what: "line", for messages. */
+bool io_next_cell(io_reader *reader, const io_cells *cells, size_t number, const char *what,
+                  size_t *at, size_t *begin, size_t *end);
 /* Adds each cell as a line; first_row is the number of the first cell among all cells. */
 bool io_add_cells(io_reader *reader, const io_view *points, const io_cells *cells,
                   size_t first_row);
+
+/* One piece of VTK's PolyData. Its cells count in the order vertices, lines, polygons, strips. */
+typedef struct io_array {
+    io_text name;
+    io_view values;
+    bool of_points; /* else of cells */
+} io_array;
+
+typedef struct io_piece {
+    io_view points;
+    size_t vertex_cells;
+    io_cells lines, polygons, strips;
+    const io_array *arrays;
+    size_t array_count;
+} io_piece;
+/* Builds what is wanted from the pieces and says what was found. */
+bool io_build_pieces(io_reader *reader, const io_piece *pieces, size_t count);
 
 /* ---- Formats --------------------------------------------------------------------------------- */
 
@@ -214,6 +256,13 @@ io_match io_sniff_trx(const io_cursor *bytes);
 io_match io_sniff_tt(const io_cursor *bytes);
 io_match io_sniff_vtk(const io_cursor *bytes);
 io_match io_sniff_vtp(const io_cursor *bytes);
+io_match io_sniff_swc(const io_cursor *bytes);
+io_match io_sniff_gxl(const io_cursor *bytes);
+io_match io_sniff_vmv(const io_cursor *bytes);
+io_match io_sniff_h5(const io_cursor *bytes);
+io_match io_sniff_stl(const io_cursor *bytes);
+io_match io_sniff_ply(const io_cursor *bytes);
+io_match io_sniff_obj(const io_cursor *bytes);
 
 bool io_read_trk(io_reader *reader, io_cursor *bytes);
 bool io_read_tck(io_reader *reader, io_cursor *bytes);
@@ -222,6 +271,13 @@ bool io_read_trx_folder(io_reader *reader, const char *path);
 bool io_read_tt(io_reader *reader, io_cursor *bytes);
 bool io_read_vtk(io_reader *reader, io_cursor *bytes);
 bool io_read_vtp(io_reader *reader, io_cursor *bytes);
+bool io_read_swc(io_reader *reader, io_cursor *bytes);
+bool io_read_gxl(io_reader *reader, io_cursor *bytes);
+bool io_read_vmv(io_reader *reader, io_cursor *bytes);
+bool io_read_h5(io_reader *reader, io_cursor *bytes);
+bool io_read_stl(io_reader *reader, io_cursor *bytes);
+bool io_read_ply(io_reader *reader, io_cursor *bytes);
+bool io_read_obj(io_reader *reader, io_cursor *bytes);
 
 /* Writers put the whole file into an open stream; the caller checks the stream for errors. */
 bool io_write_trk(FILE *file, const io_lines *lines, io_error *error);

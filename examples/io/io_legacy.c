@@ -160,12 +160,12 @@ static bool decode_name(io_legacy *v, io_text *name) {
 static bool keep_array(io_legacy *v, io_text name, const io_view *values) {
     if (v->scope == IO_OF_NOTHING)
         return true;
-    io_legacy_array *arrays =
+    io_array *arrays =
         io_grow(v->r, v->arrays, &v->array_capacity, v->array_count + 1, sizeof *arrays);
     if (!arrays || !decode_name(v, &name))
         return false;
     v->arrays = arrays;
-    io_legacy_array kept = {name, *values, v->scope == IO_OF_POINTS};
+    io_array kept = {name, *values, v->scope == IO_OF_POINTS};
     arrays[v->array_count++] = kept;
     return true;
 }
@@ -335,14 +335,6 @@ static bool enter_scope(io_legacy *v, io_legacy_scope to) {
     return take_size(v, &v->scope_rows);
 }
 
-static bool take_other_cells(io_legacy *v, size_t *count) {
-    io_cells cells;
-    if (!take_cells(v, &cells))
-        return false;
-    *count += cells.count;
-    return true;
-}
-
 /* *known is false for a word that begins no section. */
 static bool take_section(io_legacy *v, io_text word, bool *known) {
     // clang-format off
@@ -363,9 +355,11 @@ static bool take_section(io_legacy *v, io_text word, bool *known) {
     if (io_text_is(word, "LINES"))
         return take_cells(v, &v->lines);
     if (io_text_is(word, "VERTICES"))
-        return take_other_cells(v, &v->vertex_cells);
-    if (io_text_is(word, "POLYGONS") || io_text_is(word, "TRIANGLE_STRIPS"))
-        return take_other_cells(v, &v->other_cells);
+        return take_cells(v, &v->vertices);
+    if (io_text_is(word, "POLYGONS"))
+        return take_cells(v, &v->polygons);
+    if (io_text_is(word, "TRIANGLE_STRIPS"))
+        return take_cells(v, &v->strips);
     if (io_text_is(word, "POINT_DATA"))
         return enter_scope(v, IO_OF_POINTS);
     if (io_text_is(word, "CELL_DATA"))

@@ -1,5 +1,6 @@
 /* The public functions: finds the format, runs its reader or writer. */
-#include "io_internal.h"
+#include "io_graph.h"
+#include "io_surface.h"
 
 #include <errno.h>
 #include <fcntl.h>
@@ -10,6 +11,7 @@
 
 typedef struct format {
     const char *name; /* also the extension */
+    unsigned kinds;   /* what it may hold, as in io_read.h */
     io_match (*sniff)(const io_cursor *bytes);
     bool (*read)(io_reader *reader, io_cursor *bytes);
     bool (*write)(FILE *file, const io_lines *lines, io_error *error); /* NULL = read only */
@@ -17,12 +19,19 @@ typedef struct format {
 
 // clang-format off
 static const format formats[] = {
-    {"trk", io_sniff_trk, io_read_trk, io_write_trk},
-    {"tck", io_sniff_tck, io_read_tck, io_write_tck},
-    {"trx", io_sniff_trx, io_read_trx, NULL},
-    {"tt",  io_sniff_tt,  io_read_tt,  NULL},
-    {"vtk", io_sniff_vtk, io_read_vtk, NULL},
-    {"vtp", io_sniff_vtp, io_read_vtp, io_write_vtp},
+    {"trk", IO_LINES, io_sniff_trk, io_read_trk, io_write_trk},
+    {"tck", IO_LINES, io_sniff_tck, io_read_tck, io_write_tck},
+    {"trx", IO_LINES, io_sniff_trx, io_read_trx, NULL},
+    {"tt",  IO_LINES, io_sniff_tt,  io_read_tt,  NULL},
+    {"vtk", IO_ANYTHING, io_sniff_vtk, io_read_vtk, NULL},
+    {"vtp", IO_ANYTHING, io_sniff_vtp, io_read_vtp, io_write_vtp},
+    {"gxl", IO_TREE, io_sniff_gxl, io_read_gxl, NULL},
+    {"h5",  IO_TREE, io_sniff_h5,  io_read_h5,  NULL},
+    {"vmv", IO_TREE, io_sniff_vmv, io_read_vmv, NULL},
+    {"ply", IO_MESH, io_sniff_ply, io_read_ply, NULL},
+    {"obj", IO_MESH | IO_LINES, io_sniff_obj, io_read_obj, NULL},
+    {"stl", IO_MESH, io_sniff_stl, io_read_stl, NULL},
+    {"swc", IO_TREE, io_sniff_swc, io_read_swc, NULL},
 };
 // clang-format on
 enum { FORMAT_COUNT = sizeof formats / sizeof formats[0] };
@@ -61,7 +70,25 @@ static const format *find_format(const io_cursor *bytes, const char *name) {
 
 /* ---- Reading --------------------------------------------------------------------------------- */
 
-static bool read_bytes(io_reader *r, io_cursor bytes, const char *name, io_lines *out) {
+static const char *kind_text(unsigned kinds) {
+    return kinds & IO_LINES ? "lines" : kinds & IO_TREE ? "a vessel tree" : "a surface mesh";
+}
+
+static bool finish(io_reader *r, const char *name, io_contents *out) {
+    io_contents contents;
+    memset(&contents, 0, sizeof contents);
+    contents.kinds = r->found;
+    if ((!(r->found & IO_LINES) || io_finish(r, name, &contents.lines)) &&
+        (!(r->found & IO_TREE) || io_finish_tree(r, name, &contents.tree)) &&
+        (!(r->found & IO_MESH) || io_finish_mesh(r, name, &contents.mesh))) {
+        *out = contents;
+        return true;
+    }
+    io_contents_free(&contents);
+    return false;
+}
+
+static bool read_bytes(io_reader *r, io_cursor bytes, const char *name, io_contents *out) {
     if (!bytes.size)
         return io_fail(r, "is empty (0 bytes)");
     io_set_limit(r, bytes.size);
@@ -69,34 +96,81 @@ static bool read_bytes(io_reader *r, io_cursor bytes, const char *name, io_lines
         return false;
     const format *found = find_format(&bytes, name);
     if (!found)
-        return io_fail(r, "is not a line file: it begins like none of trk, tck, trx, tt, vtk, vtp");
+        return io_fail(r, "is in no format that is read: it begins like none of trk, tck, trx, tt, "
+                          "vtk, vtp, swc, gxl, h5, vmv, stl, ply, obj");
+    if (!(found->kinds & r->wanted))
+        return io_fail(r, "holds %s (%s), not %s", kind_text(found->kinds), found->name,
+                       kind_text(r->wanted));
     r->step = 1;
-    return io_tick(r, 0, 1) && found->read(r, &bytes) && io_finish(r, found->name, out);
+    r->found = found->kinds & r->wanted;
+    return io_tick(r, 0, 1) && found->read(r, &bytes) && finish(r, found->name, out);
 }
 
-bool io_read_lines_memory(const void *bytes, size_t size, const char *name_hint,
-                          const io_options *options, io_lines *out, io_error *error) {
+bool io_read_memory(const void *bytes, size_t size, const char *name_hint, unsigned wanted,
+                    const io_options *options, io_contents *out, io_error *error) {
     io_reader r;
     io_begin(&r, options, error);
+    r.wanted = wanted;
     io_cursor cursor = {bytes, size, 0};
     bool done = read_bytes(&r, cursor, name_hint, out);
     io_reader_free(&r);
     return done;
 }
 
-bool io_read_lines(const char *path, const io_options *options, io_lines *out, io_error *error) {
+static bool read_folder(io_reader *r, const char *path, io_contents *out) {
+    if (!(r->wanted & IO_LINES))
+        return io_fail(r, "is a folder; name a file in it");
+    r->found = IO_LINES;
+    return io_read_trx_folder(r, path) && finish(r, "trx", out);
+}
+
+bool io_read(const char *path, unsigned wanted, const io_options *options, io_contents *out,
+             io_error *error) {
     io_reader r;
     io_begin(&r, options, error);
+    r.wanted = wanted;
     struct stat info;
     io_cursor bytes;
     bool done;
     if (!stat(path, &info) && S_ISDIR(info.st_mode))
-        done = io_read_trx_folder(&r, path) && io_finish(&r, "trx", out);
+        done = read_folder(&r, path, out);
     else
         done = io_read_file(&r, path, &bytes) && read_bytes(&r, bytes, path, out);
     io_reader_free(&r);
     return done;
 }
+
+void io_contents_free(io_contents *contents) {
+    if (!contents)
+        return;
+    io_lines_free(&contents->lines);
+    io_tree_free(&contents->tree);
+    io_mesh_free(&contents->mesh);
+    contents->kinds = 0;
+}
+
+/* The functions for one kind: the same read, of which one part is kept. */
+// clang-format off
+#define READ_ONE(function, type, wanted, part)                                                     \
+    bool function(const char *path, const io_options *options, type *out, io_error *error) {       \
+        io_contents contents;                                                                      \
+        bool done = io_read(path, wanted, options, &contents, error);                              \
+        if (done)                                                                                  \
+            *out = contents.part;                                                                  \
+        return done;                                                                               \
+    }                                                                                              \
+    bool function##_memory(const void *bytes, size_t size, const char *name_hint,                  \
+                           const io_options *options, type *out, io_error *error) {                \
+        io_contents contents;                                                                      \
+        bool done = io_read_memory(bytes, size, name_hint, wanted, options, &contents, error);     \
+        if (done)                                                                                  \
+            *out = contents.part;                                                                  \
+        return done;                                                                               \
+    }
+// clang-format on
+READ_ONE(io_read_lines, io_lines, IO_LINES, lines)
+READ_ONE(io_read_tree, io_tree, IO_TREE, tree)
+READ_ONE(io_read_mesh, io_mesh, IO_MESH, mesh)
 
 /* ---- Writing --------------------------------------------------------------------------------- */
 

@@ -31,6 +31,9 @@ bool io_warn(io_reader *reader, const char *format, ...) {
     va_start(arguments, format);
     vsnprintf(text, sizeof text, format, arguments);
     va_end(arguments);
+    for (size_t i = 0; i < reader->warning_count; i++) /* lines and mesh may say the same */
+        if (!strcmp(reader->warnings[i], text))
+            return true;
     const char *told = reader->warning_count == MOST ? "more warnings are left out" : text;
     char **warnings = io_grow(reader, reader->warnings, &reader->warning_capacity,
                               reader->warning_count + 1, sizeof *warnings);
@@ -177,7 +180,7 @@ void io_set_limit(io_reader *r, size_t size) {
 }
 
 void io_begin(io_reader *r, const io_options *options, io_error *error) {
-    static const io_options none = {0, 0, NULL, false, NULL, NULL};
+    static const io_options none = {0, 0, NULL, false, NULL, NULL, NULL};
     memset(r, 0, sizeof *r);
     r->options = options ? options : &none;
     r->error = error;

@@ -1,10 +1,12 @@
 /* Velocity volumes: finds the format of each file, the velocity and the mask among their arrays,
  * and puts them together. */
 #include "io_grid.h"
+#include "io_hdf5.h"
 
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/stat.h>
 #include <zlib.h>
 
 typedef struct format {
@@ -167,7 +169,7 @@ static bool use_three(gather *g, uint32_t at, const io_field *const fields[3]) {
 
 static bool use_names(gather *g, uint32_t at) {
     const io_grid *grid = &g->grids[at];
-    const io_field *fields[3];
+    const io_field *fields[3] = {NULL, NULL, NULL};
     uint32_t wanted = g->name_count < 3 ? 1 : 3;
     for (uint32_t k = 0; k < wanted; k++)
         if (!(fields[k] = must_find(g, grid, g->names[k], "--names")))
@@ -684,7 +686,10 @@ bool io_read_volume_memory(const io_source *sources, uint32_t count,
 }
 
 bool io_is_volume(const char *path) {
-    uint8_t head[8192];
+    uint8_t head[65536];
+    struct stat info;
+    if (stat(path, &info) || !S_ISREG(info.st_mode))
+        return false;                 /* of a pipe nothing may be taken away */
     gzFile file = gzopen(path, "rb"); /* reads what is not compressed as it is */
     int size = file ? gzread(file, head, sizeof head) : 0;
     if (file)

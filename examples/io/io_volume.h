@@ -80,7 +80,7 @@ bool io_read_volume_memory(const io_source *sources, uint32_t count,
                            const io_volume_options *options, io_volume *out, uint32_t *failed,
                            io_error *error);
 
-/* Does the file begin like a volume? False also when it cannot be read. */
+/* Does the file begin like a volume? False also for what cannot be read, and for pipes. */
 bool io_is_volume(const char *path);
 
 /* Frees what volume owns and zeroes it. Harmless on zeroed or NULL volumes. */

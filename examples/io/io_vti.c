@@ -28,9 +28,9 @@ static bool set_affine(io_reader *r, const io_image *image, const double first[3
                         image->spacing[2] != 0;
     if (!(fabs(determinant(image->direction)) > 1e-9))
         return io_fail(r, "has a Direction that is no orientation");
-    for (int row = 0; row < 3; row++) {
+    for (size_t row = 0; row < 3; row++) {
         grid->to_mm[row][3] = image->origin[row];
-        for (int column = 0; column < 3; column++) {
+        for (size_t column = 0; column < 3; column++) {
             double step = image->direction[3 * row + column] *
                           (grid->has_spacing ? fabs(image->spacing[column]) : 1);
             grid->to_mm[row][column] = step;
@@ -48,7 +48,7 @@ static bool set_affine(io_reader *r, const io_image *image, const double first[3
 static bool set_grid(io_reader *r, const io_image *image, bool cells, io_grid *grid) {
     uint64_t size[3];
     double first[3];
-    for (int axis = 0; axis < 3; axis++) {
+    for (size_t axis = 0; axis < 3; axis++) {
         int64_t low = image->extent[2 * axis], high = image->extent[2 * axis + 1];
         if (high < low)
             return io_fail(r, "has an empty extent %lld .. %lld", (long long)low, (long long)high);
@@ -72,7 +72,7 @@ static bool is_number_array(const io_xml_array *a, io_xml_section in) {
 /* Its part of the whole extent, in points or cells from the grid's first; false: reported. */
 static bool piece_part(io_reader *r, const io_xml *x, const io_xml_piece *piece, bool cells,
                        const io_grid *grid, size_t first[3], size_t size[3]) {
-    for (int axis = 0; axis < 3; axis++) {
+    for (size_t axis = 0; axis < 3; axis++) {
         double low = piece->extent[2 * axis], high = piece->extent[2 * axis + 1];
         double begin = (double)x->image.extent[2 * axis],
                end = (double)x->image.extent[2 * axis + 1];
@@ -184,7 +184,7 @@ bool io_open_points(io_reader *r, io_cursor *bytes, io_grid *grid) {
     if (!set_grid(r, &v.image, !of_points && v.array_count, grid))
         return false;
     for (size_t i = 0; i < v.array_count; i++) {
-        const io_legacy_array *a = &v.arrays[i];
+        const io_array *a = &v.arrays[i];
         if (a->of_points != (of_points > 0))
             continue;
         if (a->values.count != io_grid_voxels(grid) || a->values.components > IO_MAX_COMPONENTS) {

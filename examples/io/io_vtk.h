@@ -83,12 +83,6 @@ bool io_xml_take(io_xml *xml, const io_xml_array *array, size_t rows, io_view *o
 
 /* ---- Legacy ---------------------------------------------------------------------------------- */
 
-typedef struct io_legacy_array {
-    io_text name;
-    io_view values;
-    bool of_points;
-} io_legacy_array;
-
 typedef enum io_legacy_scope { IO_OF_NOTHING, IO_OF_POINTS, IO_OF_CELLS } io_legacy_scope;
 
 typedef struct io_legacy {
@@ -96,12 +90,11 @@ typedef struct io_legacy {
     io_cursor c;
     bool binary;
     io_view points;
-    io_cells lines;
-    size_t vertex_cells, other_cells;
+    io_cells vertices, lines, polygons, strips;
     io_image image;
     io_legacy_scope scope; /* of the arrays that follow */
     size_t scope_rows;
-    io_legacy_array *arrays;
+    io_array *arrays;
     size_t array_count, array_capacity;
 } io_legacy;
 

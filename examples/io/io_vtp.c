@@ -13,35 +13,48 @@ static bool is_numeric(const io_xml_array *a, size_t components) {
     return a && a->type != IO_NONE && (!components || a->components == components);
 }
 
-static bool add_lines(io_xml *v, const io_xml_piece *p) {
-    const io_xml_array *points = io_xml_find(v, p, IO_XML_POINTS, NULL),
-                       *ends = io_xml_find(v, p, IO_XML_LINES, "offsets");
-    const io_xml_array *indices = io_xml_find(v, p, IO_XML_LINES, "connectivity");
-    io_view at;
-    io_cells cells;
-    memset(&cells, 0, sizeof cells);
-    if (!is_numeric(ends, 1) || !is_numeric(indices, 1) || (p->points && !is_numeric(points, 3)))
-        return io_fail(v->r, "lacks the arrays Points, offsets or connectivity of its %zu lines",
-                       p->lines);
-    if (p->points && !io_xml_take(v, points, p->points, &at))
-        return false;
-    if (!p->points)
-        memset(&at, 0, sizeof at);
-    if (!io_xml_take(v, ends, p->lines, &cells.ends))
-        return false;
+static bool take_cells(io_xml *v, const io_xml_piece *p, io_xml_section section, size_t count,
+                       const char *what, io_cells *cells) {
+    const io_xml_array *ends = io_xml_find(v, p, section, "offsets"),
+                       *indices = io_xml_find(v, p, section, "connectivity"),
+                       *points = io_xml_find(v, p, IO_XML_POINTS, NULL);
     size_t total;
-    if (!io_view_index(&cells.ends, p->lines - 1, &total))
-        return io_fail(v->r, "has a negative or broken last offset of its lines");
-    cells.count = p->lines;
-    return io_xml_take(v, indices, total, &cells.index) &&
-           io_add_cells(v->r, &at, &cells, p->verts);
+    if (!count)
+        return true;
+    if (!is_numeric(ends, 1) || !is_numeric(indices, 1) || (p->points && !is_numeric(points, 3)))
+        return io_fail(v->r, "lacks the arrays Points, offsets or connectivity of its %zu %s",
+                       count, what);
+    if (!io_xml_take(v, ends, count, &cells->ends))
+        return false;
+    if (!io_view_index(&cells->ends, count - 1, &total))
+        return io_fail(v->r, "has a negative or broken last offset of its %s", what);
+    cells->count = count;
+    return io_xml_take(v, indices, total, &cells->index);
 }
 
-static bool add_attributes(io_xml *v, const io_xml_piece *p) {
+/* Cells count in the order vertices, lines, polygons, strips; a file of lines need not be read
+ * beyond these. */
+static bool cell_rows(io_xml *v, const io_xml_piece *p, size_t *rows) {
+    const size_t counts[] = {p->verts, p->lines, p->polys, p->strips};
+    bool of_lines = !(v->r->wanted & IO_MESH);
+    *rows = 0;
+    for (size_t i = 0; i < (of_lines ? 2 : 4); i++) {
+        if (counts[i] > SIZE_MAX - *rows)
+            return io_fail(v->r, "has broken cell counts in a Piece");
+        *rows += counts[i];
+    }
+    return true;
+}
+
+static bool take_arrays(io_xml *v, const io_xml_piece *p, io_piece *out) {
+    io_array *arrays = io_alloc(v->r, p->last - p->first, sizeof *arrays);
+    size_t rows;
+    if (!arrays || !cell_rows(v, p, &rows))
+        return false;
+    out->arrays = arrays;
     for (size_t i = p->first; i < p->last; i++) {
         const io_xml_array *a = &v->arrays[i];
         bool of_points = a->section == IO_XML_POINT_DATA;
-        io_view values;
         if ((!of_points && a->section != IO_XML_CELL_DATA) || a->type == IO_NONE)
             continue;
         if (!a->components || a->components > IO_MAX_COMPONENTS) {
@@ -50,37 +63,46 @@ static bool add_attributes(io_xml *v, const io_xml_piece *p) {
                 return false;
             continue;
         }
-        /* cells count in the order vertices, lines, others; only those up to the lines matter */
-        size_t rows = of_points ? p->points : p->verts + p->lines;
-        if (!of_points && rows < p->lines)
-            return io_fail(v->r, "has broken cell counts in a Piece");
-        if (!io_xml_take(v, a, rows, &values))
-            return false;
-        if (!(of_points ? io_attach_points : io_attach_lines)(v->r, io_text_of(a->name), &values))
+        io_array *to = &arrays[out->array_count++];
+        to->name = io_text_of(a->name);
+        to->of_points = of_points;
+        if (!io_xml_take(v, a, of_points ? p->points : rows, &to->values))
             return false;
     }
     return true;
 }
 
-static bool build(io_xml *v) {
-    size_t lines = 0, others = 0;
-    for (size_t i = 0; i < v->piece_count; i++) {
-        const io_xml_piece *p = &v->pieces[i];
-        others += p->polys > 0 || p->strips > 0 || p->points > 0;
-        if (!p->lines)
-            continue;
-        lines++;
-        io_next_batch(v->r);
-        if (!add_lines(v, p) || !add_attributes(v, p))
-            return false;
-    }
-    return lines || !others || io_warn(v->r, "the file holds points or polygons, but no lines");
+static bool take_piece(io_xml *v, const io_xml_piece *p, io_piece *out) {
+    const io_xml_array *points = io_xml_find(v, p, IO_XML_POINTS, NULL);
+    bool mesh = v->r->wanted & IO_MESH;
+    out->vertex_cells = p->verts;
+    if (!p->lines && !(mesh && (p->polys || p->strips)))
+        return true;
+    return take_cells(v, p, IO_XML_LINES, p->lines, "lines", &out->lines) &&
+           (!mesh || take_cells(v, p, IO_XML_POLYS, p->polys, "polygons", &out->polygons)) &&
+           (!mesh || take_cells(v, p, IO_XML_STRIPS, p->strips, "strips", &out->strips)) &&
+           (!p->points || io_xml_take(v, points, p->points, &out->points)) &&
+           take_arrays(v, p, out);
 }
 
 bool io_read_vtp(io_reader *r, io_cursor *bytes) {
     io_xml v;
-    return io_xml_parse(r, bytes, "PolyData", "lines are read from PolyData (.vtp)", &v) &&
-           build(&v);
+    size_t lines = 0, others = 0;
+    if (!io_xml_parse(r, bytes, "PolyData", "lines, trees and meshes are read from PolyData (.vtp)",
+                      &v))
+        return false;
+    io_piece *pieces = io_alloc(r, v.piece_count, sizeof *pieces);
+    for (size_t i = 0; pieces && i < v.piece_count; i++) {
+        const io_xml_piece *p = &v.pieces[i];
+        lines += p->lines > 0;
+        others += p->polys > 0 || p->strips > 0 || p->points > 0;
+        if (!take_piece(&v, p, &pieces[i]))
+            return false;
+    }
+    if (!pieces || !io_build_pieces(r, pieces, v.piece_count))
+        return false;
+    return lines || !others || r->found != IO_LINES ||
+           io_warn(r, "the file holds points or polygons, but no lines");
 }
 
 /* ---- Writing --------------------------------------------------------------------------------- */

@@ -21,6 +21,7 @@
 static const double beat = 833.0;       /* ms */
 static const double arch_radius = 34.0; /* mm, of the centreline */
 static const double ascending = 92.0, descending = 112.0;
+static const double tilt = -0.16; /* sideways by forward */
 static const double pi = 3.14159265358979324;
 /* The patient's directions of the arch's plane and of its normal: right front to left back. */
 static const double forward[2] = {-0.6, -0.8}, sideways[2] = {0.8, -0.6};
@@ -53,9 +54,21 @@ static graph ramp(double s, double from, double to) {
     return g;
 }
 
-/* A wave of the heart beat: `rest`, and `more` around the time `peak`. */
-static double pulse(double time, double peak, double sharpness, double rest, double more) {
-    return rest + more * exp(sharpness * (cos(2.0 * pi * (time - peak) / beat) - 1.0));
+/* 2 u / (1 + u^2): a bend one way and back, within -1..1. */
+static graph bend(double z, double middle, double half) {
+    double u = (z - middle) / half, d = 1.0 / (1.0 + u * u);
+    graph g = {2.0 * u * d, 2.0 * (1.0 - u * u) * d * d / half};
+    return g;
+}
+
+/* A wave of the heart beat: `rest`, and `more` where the beat's phase (cosine and sine of the time
+ * as an angle) is that of `peak`, ms; the greater `sharpness`, the shorter. */
+static double pulse(const double phase[2], double peak, int sharpness, double rest, double more) {
+    double angle = 2.0 * pi / beat * peak, wave = 1.0;
+    double near = 0.5 + 0.5 * (phase[0] * cos(angle) + phase[1] * sin(angle));
+    for (int i = 0; i < sharpness; i++)
+        wave *= near;
+    return rest + more * wave;
 }
 
 static graph vessel_radius(double s) {
@@ -81,30 +94,16 @@ typedef struct place {
     double along[2], out[2]; /* in the arch's plane: directions of the centreline and of a */
     double stretch;          /* length of a line at constant a over that of the centreline */
     graph radius, shift;
-    double sway;     /* slope of the shear within the plane, by up */
-    double shear[2]; /* slopes of the shear out of the plane: by forward, by up */
+    graph sway, lean; /* shears by up: both limbs sway forward, the arch leans sideways */
 } place;
-
-/* Both limbs of the arch sway: forward as a function of up. */
-static double sway(double z, double *slope) {
-    double u = z / 31.0;
-    *slope = 4.5 / 31.0 * cos(u + 2.2);
-    return 4.5 * sin(u + 2.2);
-}
-
-/* The arch is no plane: sideways as a function of forward and up. */
-static double shear(double x, double z, double slope[2]) {
-    double u = z / 42.0 + 0.6, w = 0.02 * x;
-    slope[0] = -0.18 * cos(w);
-    slope[1] = 9.0 / 42.0 * cos(u);
-    return 9.0 * (sin(u) - sin(w));
-}
 
 static place find_place(const double p[3]) {
     place at;
     double z = p[2], x = forward[0] * p[0] + forward[1] * p[1], y, off;
-    y = sideways[0] * p[0] + sideways[1] * p[1] - shear(x, z, at.shear);
-    x -= sway(z, &at.sway);
+    at.sway = bend(z, -30.0, 32.0);
+    at.lean = bend(z, -50.0, 70.0);
+    y = sideways[0] * p[0] + sideways[1] * p[1] - 9.0 * at.lean.value - tilt * x;
+    x += 4.5 * at.sway.value;
     at.stretch = 1.0;
     if (z > 0.0) {
         double r = sqrt(x * x + z * z);
@@ -131,18 +130,18 @@ static place find_place(const double p[3]) {
 /* ---- the flow ----------------------------------------------------------------------------- */
 
 /* Adds the vortex and the helices, each where its window is open. */
-static void add_turns(const place *at, double time, double q, double f[3]) {
+static void add_turns(const place *at, const double phase[2], double q, double f[3]) {
     const double middle = ascending + 0.5 * pi * arch_radius, half = 0.5 * pi * arch_radius;
     graph eddy = window(at->s, 50.0, 40.0), arch = window(at->s, middle, half);
     if (eddy.value > 0.0) {
-        double vortex = pulse(time, 280.0, 1.2, 12.0, 115.0);
+        double vortex = pulse(phase, 280.0, 2, 12.0, 115.0);
         f[0] -= 4.0 * vortex * eddy.value * at->a * q;
         f[1] -= vortex * eddy.slope * q * q;
     }
     if (eddy.value > 0.0 || arch.value > 0.0) {
         double helix = 4.0 * q *
-                       (arch.value * pulse(time, 220.0, 1.5, 0.5, 3.6) -
-                        eddy.value * pulse(time, 330.0, 1.0, 0.5, 5.0));
+                       (arch.value * pulse(phase, 220.0, 3, 0.5, 3.6) -
+                        eddy.value * pulse(phase, 330.0, 2, 0.5, 5.0));
         f[1] -= helix * at->b;
         f[2] += helix * at->a;
     }
@@ -150,14 +149,15 @@ static void add_turns(const place *at, double time, double q, double f[3]) {
 
 static void fluxes(const place *at, double time, double f[3]) {
     double q = 1.0 - at->a * at->a - at->b * at->b;
-    double stream = pulse(time, 150.0, 3.0, 7.0, 88.0); /* mm^3/ms over pi: speed times R^2 */
+    double phase[2] = {cos(2.0 * pi / beat * time), sin(2.0 * pi / beat * time)};
+    double stream = pulse(phase, 150.0, 6, 7.0, 88.0); /* mm^3/ms over pi: speed times R^2 */
     graph jet = ramp(at->s, 0.0, 55.0);
     /* fluid moves outward as the jet widens, by the flux within r of 4 q^3 less that of 2 q */
     double spread = 0.5 * q * q * (1.0 + q) * jet.slope;
     f[0] = stream * (2.0 * q * jet.value + 4.0 * q * q * q * (1.0 - jet.value));
     f[1] = stream * spread * at->a;
     f[2] = stream * spread * at->b;
-    add_turns(at, time, q, f);
+    add_turns(at, phase, q, f);
 }
 
 static void velocity_at(void *user, const double position[3], double time, double velocity[3]) {
@@ -172,8 +172,8 @@ static void velocity_at(void *user, const double position[3], double time, doubl
     x = f[0] / (r * r) * at.along[0] + out * at.out[0];
     z = f[0] / (r * r) * at.along[1] + out * at.out[1];
     y = (f[0] * at.radius.slope * at.b + f[2] * r) * inverse;
-    x += at.sway * z;
-    y += at.shear[0] * x + at.shear[1] * z;
+    x -= 4.5 * at.sway.slope * z;
+    y += tilt * x + 9.0 * at.lean.slope * z;
     velocity[0] = forward[0] * x + sideways[0] * y;
     velocity[1] = forward[1] * x + sideways[1] * y;
     velocity[2] = z;
@@ -195,8 +195,8 @@ double flow_phantom_wall(const double position[3]) {
 
 /* A lattice of these voxels around the vessel, one voxel wider on each side. */
 static void lattice(const double spacing[3], flow4d_field *field) {
-    static const double low[3] = {-44, -41, -112}, high[3] = {48, 51, 46};
-    for (int a = 0; a < 3; a++) {
+    static const double low[3] = {-45, -38, -112}, high[3] = {54, 45, 46};
+    for (size_t a = 0; a < 3; a++) {
         field->size[a] = (uint32_t)ceil((high[a] - low[a]) / spacing[a]) + 2;
         field->to_world[5 * a] = spacing[a];
         field->to_world[4 * a + 3] = low[a] - 0.5 * spacing[a];

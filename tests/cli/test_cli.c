@@ -223,14 +223,90 @@ static void test_info(void **state) {
     program_free(&run);
 }
 
+static void write_text(const char *path, const char *text) {
+    FILE *file = fopen(path, "wb");
+    assert_non_null(file);
+    assert_true(fputs(text, file) >= 0);
+    assert_int_equal(fclose(file), 0);
+}
+
+/* The first file of `lineao info ...`; *json is to be deleted. */
+static const cJSON *info_of(const char *arguments, cJSON **json) {
+    program_run run = program_start(program, false, arguments);
+    if (run.code != 0)
+        print_error("%s", run.err);
+    assert_int_equal(run.code, 0);
+    *json = cJSON_Parse(run.out);
+    assert_non_null(*json);
+    program_free(&run);
+    return cJSON_GetObjectItem(*json, "files")->child;
+}
+
+/* One root, a branch of three, a radius of 0, and a parent that is missing. */
+static void test_info_tree(void **state) {
+    static const struct {
+        const char *key;
+        double value;
+    } figures[] = {{"lines", 0},        {"points", 6}, {"nodes", 6},    {"segments", 4},
+                   {"roots", 2},        {"leaves", 3}, {"branches", 1}, {"multifurcations", 1},
+                   {"max_children", 3}, {"loops", 0},  {"joined", 0}};
+    (void)state;
+    write_text("tree.swc", "1 1 0 0 0 2 -1\n2 3 0 0 4 1.5 1\n3 3 1 0 8 1 2\n4 3 -1 0 8 0.5 2\n"
+                           "5 3 0 1 9 0 2\n6 3 5 5 5 0.25 99\n");
+    cJSON *json;
+    const cJSON *file = info_of("info --json tree.swc --unit um", &json);
+    for (size_t i = 0; i < sizeof figures / sizeof figures[0]; i++)
+        assert_true(number(file, figures[i].key) == figures[i].value);
+    assert_string_equal(cJSON_GetObjectItem(file, "format")->valuestring, "swc");
+    assert_string_equal(cJSON_GetObjectItem(file, "unit")->valuestring, "um");
+    const cJSON *radius = cJSON_GetObjectItem(file, "radius");
+    assert_true(radius->child->valuedouble == 0 && radius->child->next->valuedouble == 2);
+    const cJSON *box = cJSON_GetObjectItem(file, "bbox");
+    assert_true(box->child->child->valuedouble == -1 && box->child->next->child->valuedouble == 5);
+    assert_int_equal(cJSON_GetArraySize(cJSON_GetObjectItem(file, "warnings")), 3);
+    cJSON_Delete(json);
+    file = info_of("info --json tree.swc", &json); /* and that the unit is a guess */
+    assert_string_equal(cJSON_GetObjectItem(file, "unit")->valuestring, "mm");
+    assert_int_equal(cJSON_GetArraySize(cJSON_GetObjectItem(file, "warnings")), 4);
+    cJSON_Delete(json);
+    program_run run = RUN("info tree.swc --unit um");
+    assert_non_null(strstr(run.out, "max children        3"));
+    assert_int_equal(program_lines(run.err), 3);
+    program_free(&run);
+    write_text("ring.swc", "1 1 0 0 0 2 2\n2 3 0 0 4 1.5 1\n");
+    expect_fault(RUN("info ring.swc"), 1, "cycle");
+    expect_fault(RUN("info tree.swc --unit mile"), 2, "mile");
+    expect_fault(RUN("render tree.swc -o tree.png"), 1, "vessel tree");
+}
+
+/* An open box of two triangles, one of them told with vertices of its own. */
+static void test_info_mesh(void **state) {
+    (void)state;
+    write_text("mesh.obj", "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 0 0\nv 1 1 0\nv 0 1 0\n"
+                           "f 1 2 3\nf 4 5 6\nf 1 4 2\n");
+    cJSON *json;
+    const cJSON *file = info_of("info --json mesh.obj", &json);
+    assert_int_equal(number(file, "points"), 6);
+    assert_int_equal(number(file, "vertices"), 4);
+    assert_int_equal(number(file, "triangles"), 2);
+    assert_int_equal(number(file, "boundary_edges"), 4);
+    assert_int_equal(number(file, "non_manifold_edges"), 0);
+    assert_int_equal(number(file, "components"), 1);
+    assert_string_equal(cJSON_GetObjectItem(file, "kinds")->child->valuestring, "mesh");
+    cJSON_Delete(json);
+}
+
 /* ---- pictures --------------------------------------------------------------------------- */
 
 /* Every flag that changes the picture does, and those that should not do not. */
 static void test_flags(void **state) {
-    static const char *const same[] = {"--occlusion off",      "--time 0",
+    static const char *const same[] = {"--occlusion off",      "--time 400 --trail none",
                                        "--backend vk",         "--set width=0.5",
                                        "--background #f4f4f2", "--scene aorta"};
-    static const char *const other[] = {"--width 2",
+    static const char *const other[] = {"--time 400",
+                                        "--trail highlight --time 400",
+                                        "--halo none",
+                                        "--width 2",
                                         "--set width=2",
                                         "--color line",
                                         "--color direction",
@@ -307,6 +383,76 @@ static void test_sequence(void **state) {
     assert_int_equal(access("seq_0001.png", F_OK), 0);
     assert_int_equal(access("seq-01.x.png", F_OK), 0);
     assert_int_equal(access("seq.png", F_OK), -1);
+}
+
+/* Frame k of N is the picture of the first time plus k parts of the period. */
+static void test_times(void **state) {
+    (void)state;
+    expect_ok(RUN("render " PLAIN "--frames 4 --period 800 --time 100 -o beat.png"));
+    expect_ok(RUN("render " PLAIN "--period 800 --time 300 -o frame.png"));
+    assert_true(same_pictures("beat_0001.png", "frame.png"));
+    assert_false(same_pictures("beat_0000.png", "frame.png"));
+    expect_ok(RUN("render " PLAIN "--period 800 --time 1100 -o frame.png"));
+    assert_true(same_pictures("beat_0001.png", "frame.png"));
+    expect_fault(RUN("render " PLAIN "--scene helix --time 5 -o none.png"), 1, "time");
+    expect_fault(RUN("render " PLAIN "--scene helix --frames 2 -o none.png"), 1, "time");
+    expect_fault(RUN("render " PLAIN "--scene helix --trail taper -o none.png"), 1, "time");
+    assert_int_equal(access("none.png", F_OK), -1);
+    expect_fault(RUN("render " PLAIN "-o v.mp4"), 2, "--frames");
+    expect_fault(RUN("render " PLAIN "--fps 9 -o v.png"), 2, "--fps");
+    expect_fault(RUN("render " PLAIN "--frames 2 --background 0,0,0,0 -o v.gif"), 2,
+                 "--background");
+}
+
+/* A stand-in for ffmpeg, in the folder that alone is in PATH. */
+static void fake_ffmpeg(const char *script) {
+    FILE *file = fopen("bin/ffmpeg", "w");
+    assert_non_null(file);
+    fprintf(file, "#!/bin/sh\n%s\n", script);
+    assert_int_equal(fclose(file), 0);
+    assert_int_equal(chmod("bin/ffmpeg", 0755), 0);
+}
+
+/* Nothing but these files lies here: no half video, no temporary file. */
+static int files_of_video(void) {
+    struct dirent *entry;
+    DIR *folder = opendir(".");
+    int count = 0;
+    assert_non_null(folder);
+    while ((entry = readdir(folder)) != NULL)
+        count += strncmp(entry->d_name, "film", 4) == 0;
+    closedir(folder);
+    return count;
+}
+
+static void test_videos(void **state) {
+    char *before = strdup(getenv("PATH") ? getenv("PATH") : ""), *here = getcwd(NULL, 0),
+         path[4096];
+    struct stat status;
+    (void)state;
+    mkdir("bin", 0755);
+    assert_true(snprintf(path, sizeof path, "%s/bin", here) < (int)sizeof path);
+    setenv("PATH", path, 1);
+    expect_fault(RUN("render " PLAIN "--frames 2 -o film.mp4"), 1,
+                 "film.mp4: ffmpeg is not in PATH");
+    assert_int_equal(files_of_video(), 0);
+    fake_ffmpeg("for last; do :; done\n/bin/cat >\"$last\"");
+    expect_ok(RUN("render " PLAIN "--frames 3 -o film.webm"));
+    assert_int_equal(stat("film.webm", &status), 0);
+    assert_int_equal(status.st_size, 3 * 3 * 96 * 64);
+    assert_int_equal(remove("film.webm"), 0);
+    fake_ffmpeg("echo no such codec >&2\nexit 1");
+    expect_fault(RUN("render " PLAIN "--frames 40 -o film.mp4"), 1,
+                 "film.mp4: ffmpeg: no such codec");
+    assert_int_equal(files_of_video(), 0);
+    fake_ffmpeg("for last; do :; done\n/bin/cat >\"$last\"\nexit 3");
+    expect_fault(RUN("render " PLAIN "--frames 2 -o film.gif"), 1, "film.gif: ffmpeg failed");
+    expect_fault(program_start(program, true, "render " PLAIN "--frames 2 -o film.gif"), 1,
+                 "interrupted");
+    assert_int_equal(files_of_video(), 0);
+    setenv("PATH", before, 1);
+    free(before);
+    free(here);
 }
 
 static void test_timings(void **state) {
@@ -464,8 +610,10 @@ int main(int argc, char **argv) {
         cmocka_unit_test(test_help),      cmocka_unit_test(test_wrong_usage),
         cmocka_unit_test(test_failures),  cmocka_unit_test(test_no_folder),
         cmocka_unit_test(test_interrupt), cmocka_unit_test(test_info),
+        cmocka_unit_test(test_info_tree), cmocka_unit_test(test_info_mesh),
         cmocka_unit_test(test_flags),     cmocka_unit_test(test_flags_of_files),
         cmocka_unit_test(test_camera),    cmocka_unit_test(test_sequence),
+        cmocka_unit_test(test_times),     cmocka_unit_test(test_videos),
         cmocka_unit_test(test_timings),   cmocka_unit_test(test_dump),
         cmocka_unit_test(test_compare),   cmocka_unit_test(test_both_backends),
         cmocka_unit_test(test_real_file), cmocka_unit_test(test_nothing_left),

@@ -39,6 +39,10 @@ LAO_FN lao_v2 mirror_axial(float turn, float known) {
 LAO_FN float mirror_bool(bool b) {
     return b ? 1.0f : 0.0f;
 }
+/* A word in two halves, which floats hold as they are. */
+LAO_FN lao_v4 mirror_word(lao_uint word, float z, float w) {
+    return lao_v4_make(LAO_F(LAO_I(word >> 16u)), LAO_F(LAO_I(word & 65535u)), z, w);
+}
 LAO_FN lao_v4 mirror_from_v3(lao_v3 v, float w) {
     return lao_v4_make(v.x, v.y, v.z, w);
 }
@@ -109,16 +113,20 @@ LAO_FN lao_v4 mirror(lao_uint row, lao_uint n) {
     if (row == 12u) {
         return mirror_from_v3(lao_pixel_noise(n, LAO_U(exponent)), 0.0f);
     }
-    if (row == 13u) {
-        return lao_depth_pack(1.2f * u - 0.1f, v);
-    }
-    if (row == 14u) {
-        return lao_axial_pack(1.1f * a, b);
-    }
-    if (row == 15u) {
-        lao_v2 axial = lao_axial_unpack(lao_axial_pack(a, b));
-        return lao_v4_make(lao_depth_unpack(lao_depth_pack(u, v)), axial.x, axial.y,
-                           lao_depth_unpack(d));
+    if (row >= 13u && row <= 15u) {
+        lao_int align = LAO_I(n % 3u);
+        lao_v2 direction = align == LAO_ALIGN_PAPER ? lao_v2_make(u, d.y) : mirror_axial(a, v);
+        lao_uint word = lao_level_pack(1.2f * d.x - 0.1f, direction, align);
+        if (row == 13u) {
+            return mirror_word(word, lao_level_depth(word), mirror_bool(lao_level_known(word)));
+        }
+        word = (n & 7u) == 0u ? 0u : word;
+        if (row == 14u) {
+            return lao_level_child(word, align);
+        }
+        return mirror_word(
+            lao_level_word(lao_v4_make(0.3f * direction.x, 0.3f * direction.y, one, d.z), align),
+            lao_level_nearer(word, lao_hash(n)), d.x);
     }
     if (row == 16u) {
         lao_v2 alpha = lao_axial_alpha(mirror_axial(a, v));
@@ -127,9 +135,8 @@ LAO_FN lao_v4 mirror(lao_uint row, lao_uint n) {
     }
     if (row == 17u) {
         lao_v2 mean = lao_alpha_mean(lao_v2_make(u, (n & 7u) == 0u ? 0.0f : v));
-        return lao_v4_make(mean.x, mean.y,
-                           lao_axial_difference(mirror_axial(a, u), mirror_axial(b, v)),
-                           lao_alpha_difference(lao_v2_make(u, v), lao_v2_make(d.x, d.y)));
+        return lao_v4_make(mean.x, mean.y, lao_axial_difference(lao_hash(n), lao_hash(n + 7u)),
+                           lao_alpha_difference(lao_hash(n), lao_hash(n + 7u)));
     }
     if (row == 18u) {
         return mirror_from_v3(lao_signed_pack(e), 0.0f);
@@ -197,13 +204,12 @@ LAO_FN lao_v4 mirror(lao_uint row, lao_uint n) {
     }
     if (row == 30u) {
         float slope = lao_depth_weight_slope(u, 0.01f * v);
-        return lao_v4_make(slope, lao_depth_weight(a, 0.01f * v, slope),
-                           lao_align_weight(a, 20.0f * u, v),
+        return lao_v4_make(slope, lao_depth_weight(a, slope), lao_align_weight(v, 20.0f * u, v),
                            lao_align_weight(0.2f * u, 15.0f, 0.1f));
     }
     if (row == 31u) {
         return lao_v4_make(
-            lao_light_weight(u, v, lao_abs(a), lao_abs(b), exponent),
+            lao_light_weight(u, v, lao_abs(a), b, exponent),
             lao_light_weight_author(e, v, (n & 7u) == 0u ? lao_v3_make(0.0f, 0.0f, 0.0f) : f, g,
                                     exponent),
             0.0f, 0.0f);
@@ -222,11 +228,12 @@ LAO_FN lao_v4 mirror(lao_uint row, lao_uint n) {
         if (row == 34u) {
             return mirror_from_v3(s.n, s.r.x);
         }
-        lao_tap tap = lao_tap_make(s, direction, lao_v2_make(200.0f, 150.0f));
+        lao_tap tap = lao_tap_make(s, direction, lao_v2_make(1.0f / 200.0f, 1.0f / 150.0f));
         if (row == 35u) {
             return lao_v4_make(tap.x, tap.y, tap.n_omega, tap.r_omega);
         }
-        return mirror_from_v3(direction, 4.0f * tap.flip + tap.use);
+        return lao_v4_make(tap.at.x, tap.at.y, direction.z,
+                           4.0f * lao_turned(1.0f, tap.side) + mirror_bool(tap.counts));
     }
     if (row == 37u) {
         return mirror_from_v3(lao_mirror(p, e), 0.0f);

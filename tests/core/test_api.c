@@ -124,6 +124,7 @@ static void results_have_words(void **state) {
     assert_int_equal(lao_format_bytes(LAO_FORMAT_RGBA16F), 8);
     assert_int_equal(lao_format_bytes(LAO_FORMAT_RGBA32F), 16);
     assert_int_equal(lao_format_bytes(LAO_FORMAT_R32F), 4);
+    assert_int_equal(lao_format_bytes(LAO_FORMAT_R32UI), 4);
     assert_int_equal(lao_format_bytes(LAO_FORMAT_D32F), 4);
     assert_int_equal(lao_format_bytes(LAO_FORMAT_HOST), 0);
     assert_int_equal(lao_format_bytes((lao_format)99), 0);
@@ -407,8 +408,10 @@ static void wrong_arguments(void **state) {
                  "no_such");
     assert_fails(&f, lao_read(f.context, f.view, "color", 0, NULL, 0, &info), IMAGE_UNKNOWN,
                  "color"); /* the host's */
-    assert_fails(&f, lao_read(f.context, f.view, "level_depth", 3, NULL, 0, &info), IMAGE_UNKNOWN,
-                 "level_depth");
+    assert_fails(&f, lao_read(f.context, f.view, "level", 3, NULL, 0, &info), IMAGE_UNKNOWN,
+                 "level");
+    assert_fails(&f, lao_read(f.context, f.view, "tensor", 0, NULL, 0, &info), IMAGE_UNKNOWN,
+                 "tensor"); /* sums begin at level 1 */
     assert_fails(&f, lao_read(f.context, f.view, "out", 0, pixels, 64 * 48 * 4 - 1, &info),
                  READ_SIZE, "out");
     assert_fails(&f, lao_read_raw(f.context, f.view, "out", 0, pixels, 64 * 48 * 4 - 1, &info),
@@ -418,10 +421,8 @@ static void wrong_arguments(void **state) {
     assert_true(info.width == 64 && info.height == 48 && info.channels == 4);
     assert_ok(lao_read(f.context, f.view, "out", 0, pixels, 64 * 48 * 4, NULL));
     assert_ok(lao_read_raw(f.context, f.view, "out", 0, pixels, 64 * 48 * 4, &info));
-    assert_ok(lao_read(f.context, f.view, "level_depth", 2, NULL, 0, &info));
-    assert_true(info.width == 32 && info.height == 24 && info.channels == 2);
-    assert_ok(lao_read(f.context, f.view, "level_axial", 0, NULL, 0, &info));
-    assert_int_equal(info.channels, 2);
+    assert_ok(lao_read(f.context, f.view, "level", 2, NULL, 0, &info));
+    assert_true(info.width == 32 && info.height == 24 && info.channels == 3);
     assert_ok(lao_read(f.context, f.view, "ao", 0, NULL, 0, &info));
     assert_int_equal(info.channels, 1);
     assert_fails(&f, lao_timings(f.context, f.view, NULL, &count), TIMINGS_OFF, NULL);
@@ -455,7 +456,7 @@ static void limits_of_the_device(void **state) {
     fixture_end(&f);
     core_window_clear();
     memset(&f.host, 0, sizeof f.host);
-    core_seen.max_texture_units = 6; /* occlusion reads tangent, 3 depths, 3 axials */
+    core_seen.max_texture_units = 3; /* occlusion reads tangent and 3 levels */
     core_seen.max_image_size = 128;
     f.backend = core_backend(0);
     assert_ok(lao_create(&f.desc, &f.context));
@@ -471,9 +472,6 @@ static void limits_of_the_device(void **state) {
         f.frame.set_count = 1;
         settings.levels = 2;
         f.sets[0].settings = &settings;
-        assert_ok(lao_render(f.context, &f.frame));
-        settings.levels = 3;
-        settings.align = LAO_ALIGN_NONE;
         assert_ok(lao_render(f.context, &f.frame));
         settings.supersampling = 3;
         assert_fails(&f, lao_render(f.context, &f.frame), VIEW_SIZE, "lines");

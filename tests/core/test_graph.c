@@ -140,6 +140,14 @@ static void first_repeats_with_none(tables *t) {
 static void preset_setting(tables *t) {
     t->presets[0].setting = "no_such";
 }
+static void words_cleared(tables *t) {
+    t->images[1].format = LAO_FORMAT_R32UI;
+    t->images[1].clear[3] = 1;
+}
+static void words_blended(tables *t) {
+    t->images[1].format = LAO_FORMAT_R32UI;
+    t->passes[0].blend = LAO_BLEND_ADD;
+}
 static void writes_nothing(tables *t) {
     t->passes[0].writes[0].image = NULL;
 }
@@ -245,6 +253,8 @@ static const fault faults[] = {
     {levels_setting, "image 'b' counts its levels by the unknown setting 'no_such'"},
     {preset_setting, "preset 'other' names the unknown setting 'no_such'"},
     {writes_nothing, "pass 'first' writes nothing"},
+    {words_cleared, "image 'a' holds words, which are cleared to 0"},
+    {words_blended, "pass 'first' blends the words of 'a'"},
     {writes_unknown, "pass 'first' writes the unknown image 'no_such'"},
     {reads_unknown, "pass 'second' reads the unknown image 'no_such'"},
     {reads_unknown_buffer, "pass 'second' reads the unknown buffer '#no_such'"},

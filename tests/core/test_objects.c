@@ -183,9 +183,9 @@ static uint32_t steps_of(const char *name, const lao_plan_step **found) {
 /* ---------------------------------------------------------------------------------------- tests */
 
 static void rows_run_stage_by_stage(void **state) {
-    static const char *const order[] = {"lines",    "measure",  "draw",      "level_zero",
-                                        "level_up", "level_up", "occlusion", "shade",
-                                        "tint",     "over",     "resolve"};
+    static const char *const order[] = {"lines_halo", "measure",  "draw",      "level_zero",
+                                        "level_up",   "level_up", "occlusion", "shade",
+                                        "tint",       "over",     "resolve"};
     fixture f;
     (void)state;
     begin(&f);
@@ -205,7 +205,7 @@ static void a_set_without_the_buffers_has_no_such_steps(void **state) {
     f.frame.set_count = 2;
     assert_int_equal(lao_render(f.context, &f.frame), LAO_OK);
     assert_int_equal(steps_of("draw", NULL), 1);
-    assert_int_equal(steps_of("lines", NULL), 2);
+    assert_int_equal(steps_of("lines_halo", NULL), 2);
     f.sets[1].object = f.object; /* a plan of its own */
     assert_int_equal(lao_render(f.context, &f.frame), LAO_OK);
     assert_int_equal(steps_of("draw", NULL), 2);
@@ -272,7 +272,7 @@ static void a_step_finds_its_buffers(void **state) {
     draw.object = NULL;
     assert_int_equal(lao_step_draws(&execution, step, &chunks), 1);
     assert_null(chunks[0].buffers[0]);
-    assert_int_equal(steps_of("lines", &step), 1);
+    assert_int_equal(steps_of("lines_halo", &step), 1);
     assert_int_equal(lao_step_draws(&execution, step, &chunks), 0);
     end(&f);
 }
@@ -303,9 +303,9 @@ static void settings_of_the_module(void **state) {
 }
 
 static void sets_that_occlude_each_other(void **state) {
-    static const char *const order[] = {"lines",      "lines",    "measure",  "draw",
-                                        "level_zero", "level_up", "level_up", "occlusion",
-                                        "shade",      "tint",     "over",     "resolve"};
+    static const char *const order[] = {"lines_halo", "lines_halo", "measure",  "draw",
+                                        "level_zero", "level_up",   "level_up", "occlusion",
+                                        "shade",      "tint",       "over",     "resolve"};
     fixture f;
     uint32_t lines = 0;
     (void)state;
@@ -318,7 +318,7 @@ static void sets_that_occlude_each_other(void **state) {
     for (uint32_t i = 0; i < core_seen.plan->step_count; i++) {
         const lao_plan_step *step = &core_seen.plan->steps[i];
         assert_string_equal(step->row->name, order[i]);
-        if (strcmp(order[i], "lines") == 0) { /* the second keeps what the first drew */
+        if (strcmp(order[i], "lines_halo") == 0) { /* the second keeps what the first drew */
             assert_int_equal(step->set, lines);
             assert_int_equal(step->colors[0].clear, lines == 0);
             assert_int_equal(step->depth.clear, lines == 0);

@@ -308,7 +308,7 @@ static void missing_and_foreign_files_are_told(void **state) {
     buffer b = {0};
     must_fail(&b, NULL, NULL, "empty");
     put_text(&b, "hello");
-    must_fail(&b, NULL, NULL, "not a line file");
+    must_fail(&b, NULL, NULL, "in no format");
     must_fail(&b, "a.trk", NULL, "1000 bytes");
     must_fail(&b, "a.tck.gz", NULL, "mrtrix tracks");
     must_fail(&b, "a.trx", NULL, "zip");

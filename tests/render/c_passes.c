@@ -41,11 +41,25 @@ static lao_v4 fetch(const render_image *image, int x, int y) {
     return v;
 }
 
+static uint32_t fetch_word(const render_image *image, int x, int y) {
+    uint32_t word;
+    assert_int_equal(image->format, LAO_FORMAT_R32UI);
+    memcpy(&word, image->data + ((size_t)y * image->width + (size_t)x) * sizeof word, sizeof word);
+    return word;
+}
+
 /* LAO_TEXEL: outside, the nearest inside. */
+static int nearest(float x, uint32_t size) {
+    int last = (int)size - 1;
+    return x < 0 ? 0 : x > (float)last ? last : (int)x;
+}
+
 static lao_v4 texel(const render_image *image, float x, float y) {
-    int w = (int)image->width - 1, h = (int)image->height - 1;
-    int i = x < 0 ? 0 : x > (float)w ? w : (int)x, j = y < 0 ? 0 : y > (float)h ? h : (int)y;
-    return fetch(image, i, j);
+    return fetch(image, nearest(x, image->width), nearest(y, image->height));
+}
+
+static uint32_t texel_word(const render_image *image, float x, float y) {
+    return fetch_word(image, nearest(x, image->width), nearest(y, image->height));
 }
 
 /* Round half to even of v * 255: what the store of a normalised byte does. */
@@ -98,8 +112,7 @@ void c_inputs_find(c_inputs *in, const render_result *result, const lao_settings
     in->ao = render_find(result, "ao", 0);
     for (uint32_t level = 0; level < C_MOST_LEVELS; level++) {
         in->tensor[level] = render_find(result, "tensor", level);
-        in->level_depth[level] = render_find(result, "level_depth", level);
-        in->level_axial[level] = render_find(result, "level_axial", level);
+        in->level[level] = render_find(result, "level", level);
         in->level_tangent[level] = render_find(result, "level_tangent", level);
     }
 }
@@ -109,18 +122,15 @@ void c_inputs_find(c_inputs *in, const render_result *result, const lao_settings
 static c_level level_make(uint32_t level, uint32_t width, uint32_t height) {
     c_level l;
     l.tensor = make("tensor", level, LAO_FORMAT_RGBA32F, width, height);
-    l.depth = make("level_depth", level, LAO_FORMAT_RGBA8, width, height);
-    l.axial = make("level_axial", level, LAO_FORMAT_RGBA8, width, height);
+    l.words = make("level", level, LAO_FORMAT_R32UI, width, height);
     l.tangent = make("level_tangent", level, LAO_FORMAT_RGBA8, width, height);
     return l;
 }
 
-static void level_store(c_level *l, int x, int y, lao_v4 tensor, lao_v4 depth, lao_v2 direction,
-                        lao_v3 tangent) {
-    store(&l->tensor, x, y, tensor);
-    store(&l->depth, x, y, depth);
-    store(&l->axial, x, y, lao_axial_pack(direction.x, direction.y));
-    store(&l->tangent, x, y, lao_v4_make(tangent.x, tangent.y, tangent.z, 1));
+static void level_store(c_level *l, int x, int y, uint32_t word, lao_v4 tangent) {
+    size_t at = ((size_t)y * l->words.width + (size_t)x) * sizeof word;
+    memcpy(l->words.data + at, &word, sizeof word);
+    store(&l->tangent, x, y, tangent);
 }
 
 static lao_v2 slope_of(const c_inputs *in, int x, int y) {
@@ -130,23 +140,19 @@ static lao_v2 slope_of(const c_inputs *in, int x, int y) {
 static void level_zero_pixel(const c_inputs *in, c_level *l, int x, int y) {
     int align = (int)in->settings.align;
     lao_v2 direction = lao_v2_make(0, 0);
-    lao_v4 t;
-    float d;
+    lao_v4 t = fetch(in->tangent, x, y);
+    lao_v3 v = lao_v3_make(t.x, t.y, t.z);
     if (fetch(in->color, x, y).w < 0.5f) {
-        level_store(l, x, y, lao_v4_make(0, 0, 0, 1), lao_depth_pack(1, 0), direction,
-                    lao_v3_make(0.5f, 0.5f, 0.5f));
-        store(&l->tangent, x, y, lao_v4_make(0.5f, 0.5f, 0.5f, 0.5f));
+        level_store(l, x, y, 0, lao_v4_make(0.5f, 0.5f, 0.5f, 0.5f));
         return;
     }
-    t = fetch(in->tangent, x, y);
-    d = fetch(in->depth, x, y).x;
     if (align != LAO_ALIGN_NONE)
-        direction = lao_screen_axial(lao_v3_make(t.x, t.y, t.z), slope_of(in, x, y),
-                                     in->frame.scale, in->frame.depth.w);
+        direction = lao_screen_axial(v, slope_of(in, x, y), in->frame.scale, in->frame.depth.w);
     if (align == LAO_ALIGN_PAPER)
         direction = lao_axial_alpha(direction);
-    level_store(l, x, y, lao_v4_make(direction.x, direction.y, 1, d), lao_depth_pack(d, 1),
-                direction, lao_signed_pack(lao_v3_make(t.x, t.y, t.z)));
+    v = lao_signed_pack(v);
+    level_store(l, x, y, lao_level_pack(fetch(in->depth, x, y).x, direction, align),
+                lao_v4_make(v.x, v.y, v.z, 1));
 }
 
 c_level c_level_zero(const c_inputs *in) {
@@ -158,40 +164,39 @@ c_level c_level_zero(const c_inputs *in) {
     return l;
 }
 
-static void level_up_pixel(const c_inputs *in, c_level *l, const render_image *finer,
-                           const render_image *tangents, int x, int y) {
+static void level_up_pixel(const c_inputs *in, c_level *l, uint32_t level, int x, int y) {
     int box = (int)in->settings.pyramid == LAO_PYRAMID_BOX, align = (int)in->settings.align;
+    const render_image *words = in->level[level - 1];
     lao_level_sum sum = lao_level_sum_start(lao_v3_make(0, 0, 0));
     lao_v4 mean;
-    lao_v2 direction;
+    lao_v3 tangent;
     for (int j = box ? 0 : -1; j <= (box ? 1 : 2); j++) {
         for (int i = box ? 0 : -1; i <= (box ? 1 : 2); i++) {
             int cx = 2 * x + i, cy = 2 * y + j;
             lao_v3 t = lao_v3_make(0, 0, 0);
-            if (cx < 0 || cy < 0 || cx >= (int)finer->width || cy >= (int)finer->height)
+            if (cx < 0 || cy < 0 || cx >= (int)words->width || cy >= (int)words->height)
                 continue;
             if ((int)in->settings.light == LAO_LIGHT_AUTHOR)
-                t = lao_signed_unpack(fetch(tangents, cx, cy));
-            sum = lao_level_sum_add(sum, fetch(finer, cx, cy), t,
-                                    box ? 0.25f : lao_gauss_weight(i) * lao_gauss_weight(j));
+                t = lao_signed_unpack(fetch(in->level_tangent[level - 1], cx, cy));
+            sum = lao_level_sum_add(sum,
+                                    level == 1 ? lao_level_child(fetch_word(words, cx, cy), align)
+                                               : fetch(in->tensor[level - 1], cx, cy),
+                                    t, box ? 0.25f : lao_gauss_weight(i) * lao_gauss_weight(j));
         }
     }
     mean = lao_level_sum_mean(sum);
-    direction = lao_v2_make(mean.x, mean.y);
-    if (align == LAO_ALIGN_ROTATION)
-        direction = lao_axial_unit(direction);
-    if (align == LAO_ALIGN_PAPER)
-        direction = lao_alpha_mean(direction);
-    level_store(l, x, y, mean, lao_depth_pack(mean.w, mean.z > 0 ? 1.0f : 0.0f), direction,
-                lao_signed_pack(lao_v3_unit(sum.tangent, lao_v3_make(0, 0, 0))));
+    store(&l->tensor, x, y, mean);
+    tangent = lao_signed_pack(lao_v3_unit(sum.tangent, lao_v3_make(0, 0, 0)));
+    level_store(l, x, y, lao_level_word(mean, align),
+                lao_v4_make(tangent.x, tangent.y, tangent.z, 1));
 }
 
 c_level c_level_up(const c_inputs *in, uint32_t level) {
-    const render_image *finer = in->tensor[level - 1];
+    const render_image *finer = in->level[level - 1];
     c_level l = level_make(level, (finer->width + 1) / 2, (finer->height + 1) / 2);
     for (int y = 0; y < (int)l.tensor.height; y++) {
         for (int x = 0; x < (int)l.tensor.width; x++)
-            level_up_pixel(in, &l, finer, in->level_tangent[level - 1], x, y);
+            level_up_pixel(in, &l, level, x, y);
     }
     return l;
 }
@@ -206,23 +211,22 @@ typedef struct centre {
 
 typedef struct gather {
     lao_sampler rows;
-    lao_v2 axial;
-    float depth, slope;
+    uint32_t centre;
+    float threshold, least, slope, align_floor;
 } gather;
 
 static gather gather_make(const c_inputs *in, const centre *c, uint32_t level) {
     const lao_settings *s = &in->settings;
-    float size = 1.0f / (float)(1u << level);
+    float size = 1.0f / (float)(1u << level), step = in->frame.host_depth.w / LAO_LEVEL_STEPS;
     float radius = lao_sample_radius(c->zoom, s->radius, s->width, s->radius_step, level);
+    float reach = lao_depth_reach(s->density, level, (uint32_t)s->levels);
     gather g;
     g.rows = lao_sampler_make(c->noise, c->n, c->r, radius, size, c->pixel.x, c->pixel.y);
-    float x = floorf(g.rows.centre.x), y = floorf(g.rows.centre.y);
-    g.depth = lao_depth_unpack(texel(in->level_depth[level], x, y));
-    g.axial = lao_v2_make(0, 0);
-    if ((int)s->align != LAO_ALIGN_NONE)
-        g.axial = lao_axial_unpack(texel(in->level_axial[level], x, y));
-    g.slope = lao_depth_weight_slope(lao_depth_reach(s->density, level, (uint32_t)s->levels),
-                                     s->depth_threshold);
+    g.centre = texel_word(in->level[level], g.rows.own.x, g.rows.own.y);
+    g.threshold = s->depth_threshold / step;
+    g.least = s->strict_zero != 0 ? -g.threshold : 0;
+    g.slope = step * lao_depth_weight_slope(reach, s->depth_threshold);
+    g.align_floor = lao_level_known(g.centre) ? s->align_floor : 1;
     return g;
 }
 
@@ -233,7 +237,7 @@ static float light_weight(const c_inputs *in, const centre *c, lao_tap tap, lao_
         return lao_light_weight(c->diffuse, tap.n_omega, s->light_intensity * s->light_specular,
                                 tap.r_omega, (int)s->light_exponent);
     lao_v3 occluder = lao_signed_unpack(texel(in->level_tangent[level], tap.x, tap.y));
-    lao_v3 omega = lao_v3_scale(lao_mirror(direction, c->noise), tap.flip);
+    lao_v3 omega = lao_v3_scale(lao_mirror(direction, c->noise), lao_turned(1, tap.side));
     return lao_light_weight_author(omega, tap.n_omega, occluder, c->l, (int)s->light_exponent);
 }
 
@@ -241,34 +245,36 @@ static float light_weight(const c_inputs *in, const centre *c, lao_tap tap, lao_
 static lao_v2 sample_weight(const c_inputs *in, const centre *c, const gather *g, lao_v3 direction,
                             uint32_t level) {
     const lao_settings *s = &in->settings;
-    const render_image *depths = in->level_depth[level];
+    const render_image *words = in->level[level];
     int show = (int)s->show, align = (int)s->align;
-    lao_tap tap =
-        lao_tap_make(g->rows, direction, lao_v2_make((float)depths->width, (float)depths->height));
-    float nearer = g->depth - lao_depth_unpack(texel(depths, tap.x, tap.y));
-    float difference = nearer * in->frame.host_depth.w;
-    float weight = tap.use;
+    lao_tap tap = lao_tap_make(
+        g->rows, direction, lao_v2_make(1.0f / (float)words->width, 1.0f / (float)words->height));
+    uint32_t word = texel_word(words, tap.x, tap.y);
+    float beyond = lao_level_nearer(g->centre, word) - g->threshold;
+    float weight = 1;
+    bool visible = tap.counts;
     if (lao_uses_visibility(show))
-        weight = difference >= (s->strict_zero != 0 ? 0.0f : s->depth_threshold) ? weight : 0.0f;
+        visible = visible && beyond >= g->least;
     if (lao_uses_depth(show))
-        weight = weight * lao_depth_weight(difference, s->depth_threshold, g->slope);
+        weight = lao_depth_weight(beyond, g->slope);
     if (lao_uses_light(show))
         weight = weight * light_weight(in, c, tap, direction, level);
     if (align != LAO_ALIGN_NONE && lao_uses_alignment(show)) {
-        lao_v2 axial = lao_axial_unpack(texel(in->level_axial[level], tap.x, tap.y));
-        float x = align == LAO_ALIGN_ROTATION ? lao_axial_difference(g->axial, axial)
-                                              : lao_alpha_difference(g->axial, axial);
-        weight = weight * lao_align_weight(x, s->align_intensity, s->align_floor);
+        float x = align == LAO_ALIGN_ROTATION ? lao_axial_difference(g->centre, word)
+                                              : lao_alpha_difference(g->centre, word);
+        float aligned = lao_align_weight(x, s->align_intensity, g->align_floor);
+        weight = weight * (lao_level_known(word) ? aligned : 1);
     }
-    return lao_v2_make(weight, tap.use);
+    return lao_v2_make(visible ? weight : 0, tap.counts ? 1.0f : 0.0f);
 }
 
 static float occlusion_pixel(const c_inputs *in, int x, int y) {
     const lao_settings *s = &in->settings;
-    lao_v4 own = fetch(in->level_depth[0], x, y), line = fetch(in->tangent, x, y);
+    uint32_t own = fetch_word(in->level[0], x, y);
+    lao_v4 line = fetch(in->tangent, x, y);
     float total = 0, nl;
     centre c;
-    if (own.w < 0.5f)
+    if (own == 0)
         return 0;
     c.pixel = lao_v2_make((float)x + 0.5f, (float)y + 0.5f);
     c.l = lao_towards_eye(slope_of(in, x, y), in->frame.depth.w);
@@ -276,9 +282,10 @@ static float occlusion_pixel(const c_inputs *in, int x, int y) {
     nl = lao_max(lao_v3_dot(c.n, c.l), 0);
     c.diffuse = s->light_intensity * s->light_diffuse * nl;
     c.r = lao_v3_along(lao_v3_scale(c.l, -1), c.n, 2 * nl);
-    c.noise = lao_pixel_noise((uint32_t)x, (uint32_t)y);
+    c.noise = in->noise ? in->noise(in->noise_frame, (uint32_t)x, (uint32_t)y)
+                        : lao_pixel_noise((uint32_t)x, (uint32_t)y);
     c.zoom = line.w > 0 ? line.w
-                        : lao_pixel_zoom(in->frame.scale, in->frame.depth, lao_depth_unpack(own));
+                        : lao_pixel_zoom(in->frame.scale, in->frame.depth, lao_level_depth(own));
     for (uint32_t level = 0; level < (uint32_t)s->levels; level++) {
         gather g = gather_make(in, &c, level);
         uint32_t count = lao_sample_count((uint32_t)s->samples, level);

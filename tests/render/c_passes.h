@@ -12,14 +12,16 @@ typedef struct c_inputs {
     lao_frame_uniforms frame;
     lao_settings settings; /* filled */
     const render_image *color, *tangent, *depth, *zbuffer, *shaded, *out, *ao;
-    const render_image *tensor[C_MOST_LEVELS], *level_depth[C_MOST_LEVELS];
-    const render_image *level_axial[C_MOST_LEVELS], *level_tangent[C_MOST_LEVELS];
+    const render_image *tensor[C_MOST_LEVELS]; /* from level 1 on */
+    const render_image *level[C_MOST_LEVELS], *level_tangent[C_MOST_LEVELS];
+    lao_v3 (*noise)(uint32_t frame, uint32_t x, uint32_t y); /* NULL: lao_pixel_noise */
+    uint32_t noise_frame;
 } c_inputs;
 
 void c_inputs_find(c_inputs *in, const render_result *result, const lao_settings *settings);
 
 typedef struct c_level {
-    render_image tensor, depth, axial, tangent;
+    render_image tensor, words, tangent;
 } c_level;
 
 /* Each makes images for c_free, named and sized as those of the graph. */

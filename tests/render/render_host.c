@@ -22,6 +22,26 @@ static struct {
     uint32_t count;
 } spy;
 
+static struct {
+    const lao_module *const *list;
+    uint32_t count;
+} modules;
+
+void render_modules(const lao_module *const *list, uint32_t count) {
+    modules.list = list;
+    modules.count = count;
+}
+
+/* The row of an image by its number in the graph. */
+static const lao_image_row *image_row(uint32_t image) {
+    const lao_module *module = lao_lines_module();
+    for (uint32_t m = 0; image >= module->image_count; m++) {
+        image -= module->image_count;
+        module = modules.list[m];
+    }
+    return &module->images[image];
+}
+
 static void spy_on(const lao_execution *execution) {
     const lao_plan *plan = execution->plan;
     memcpy(&spy.frame, execution->frame_uniforms, sizeof spy.frame);
@@ -63,6 +83,8 @@ static int open_context(render_device *device, lao_backend *backend) {
     desc.backend = backend;
     desc.logger.log = on_log;
     desc.logger.user = device;
+    desc.modules = modules.list;
+    desc.module_count = modules.count;
     if (lao_create(&desc, &device->context) == LAO_OK)
         return 1;
     print_message("%s: %s\n", device->name, device->log);
@@ -487,10 +509,15 @@ static lao_lines upload(render_device *device, const render_lines *lines) {
     return handle;
 }
 
+static lao_object upload_object(render_device *device, const lao_object_desc *desc) {
+    lao_object handle = {0};
+    succeeds(device, lao_object_create(device->context, desc, &handle));
+    return handle;
+}
+
 static void read_all(render_device *device, lao_view view, render_result *result) {
-    const lao_module *module = lao_lines_module();
     for (uint32_t i = 0; i < spy.count; i++) {
-        const lao_image_row *row = &module->images[spy.instances[i].image];
+        const lao_image_row *row = image_row(spy.instances[i].image);
         render_image *image = &result->images[result->count++];
         lao_read_info info;
         size_t size;
@@ -565,16 +592,25 @@ void render_draw(render_device *device, const render_shot *shot, render_result *
         frame.target = surface_image(&target, shot->target_flags);
     }
     for (uint32_t i = 0; i < shot->set_count; i++) {
-        sets[i].lines = upload(device, shot->lines[i]);
+        if (shot->lines[i])
+            sets[i].lines = upload(device, shot->lines[i]);
+        if (shot->objects[i])
+            sets[i].object = upload_object(device, shot->objects[i]);
         sets[i].settings = shot->settings[i];
+        sets[i].module_settings = shot->module_settings[i];
     }
+    frame.flags = shot->frame_flags;
     frame.sets = sets;
     frame.set_count = shot->set_count;
     draw(device, &frame);
     result->frame = spy.frame;
     read_all(device, frame.view, result);
-    for (uint32_t i = 0; i < shot->set_count; i++)
-        succeeds(device, lao_lines_destroy(device->context, sets[i].lines));
+    for (uint32_t i = 0; i < shot->set_count; i++) {
+        if (shot->lines[i])
+            succeeds(device, lao_lines_destroy(device->context, sets[i].lines));
+        if (shot->objects[i])
+            succeeds(device, lao_object_destroy(device->context, sets[i].object));
+    }
     if (shot->target != RENDER_NO_TARGET) {
         surface_read(device, &target, "target", &result->target);
         surface_free(device, &target);
@@ -602,11 +638,13 @@ const render_image *render_find(const render_result *result, const char *name, u
     return NULL;
 }
 
-/* One component of one texel. Half floats are finite here but for NaN and infinity. */
+/* One component of one texel; a word as a fraction. Half floats are finite here but for NaN and
+ * infinity. */
 static double component(const render_image *image, size_t texel, uint32_t channel) {
     const uint8_t *at = image->data + texel * lao_format_bytes(image->format);
     float value;
     uint16_t half;
+    uint32_t word;
     switch (image->format) {
     case LAO_FORMAT_RGBA8:
         return at[channel] / 255.0;
@@ -617,6 +655,9 @@ static double component(const render_image *image, size_t texel, uint32_t channe
         return ldexp((half & 0x3ff) + ((half & 0x7c00) != 0 ? 1024 : 0),
                      ((half & 0x7c00) != 0 ? (half >> 10 & 31) : 1) - 25) *
                ((half & 0x8000) != 0 ? -1 : 1);
+    case LAO_FORMAT_R32UI:
+        memcpy(&word, at, sizeof word);
+        return word / 4294967296.0;
     default:
         memcpy(&value, at + 4 * channel, sizeof value);
         return (double)value;
@@ -624,7 +665,8 @@ static double component(const render_image *image, size_t texel, uint32_t channe
 }
 
 static uint32_t channels(lao_format format) {
-    return format == LAO_FORMAT_R32F || format == LAO_FORMAT_D32F ? 1 : 4;
+    return format == LAO_FORMAT_R32F || format == LAO_FORMAT_R32UI || format == LAO_FORMAT_D32F ? 1
+                                                                                                : 4;
 }
 
 float *render_floats(const render_image *image, uint32_t channel) {

@@ -30,6 +30,8 @@ typedef struct render_device {
 
 /* Opens a device with a context on it. `get_proc` NULL: the driver's; api_version 0: 1.3. Returns 0
  * where there is none: the test skips, or fails where a GPU is expected. */
+/* Further modules of the contexts that are opened from now on; the array must stay. */
+void render_modules(const lao_module *const *modules, uint32_t count);
 int render_open_gl(render_device *device, void *(*get_proc)(const char *name, void *user));
 int render_open_vk(render_device *device, uint32_t api_version);
 /* Views are kept until here, so that no shader is compiled twice. Fine on a closed one. */
@@ -77,8 +79,11 @@ enum render_target { RENDER_NO_TARGET, RENDER_TARGET_RGBA8, RENDER_TARGET_RGBA32
 typedef struct render_shot {
     uint32_t width, height;
     lao_camera camera;
-    const render_lines *lines[RENDER_MOST_SETS];
+    const render_lines *lines[RENDER_MOST_SETS]; /* NULL: none */
     const lao_settings *settings[RENDER_MOST_SETS];
+    const lao_object_desc *objects[RENDER_MOST_SETS]; /* NULL: none */
+    const void *const *module_settings[RENDER_MOST_SETS];
+    uint32_t frame_flags;
     uint32_t set_count;
     float background[4], sphere[4], time;
     enum render_target target;

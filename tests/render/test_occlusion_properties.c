@@ -242,24 +242,22 @@ static void test_roll_of_directions(void **state) {
         render_draw(&gl, &shot, &a);
         shot.camera = rolled();
         render_draw(&gl, &shot, &b);
-        axial_a = render_find(&a, "level_axial", 0);
-        axial_b = render_find(&b, "level_axial", 0);
+        axial_a = render_find(&a, "level", 0);
+        axial_b = render_find(&b, "level", 0);
         color_a = render_find(&a, "color", 0);
         color_b = render_find(&b, "color", 0);
         for (uint32_t y = 0; y < SIZE; y++) {
             for (uint32_t x = 0; x < SIZE; x++) {
                 size_t i = (size_t)y * SIZE + x, k = (size_t)x * SIZE + SIZE - 1 - y;
-                lao_v4 p, q;
+                uint32_t p, q;
                 lao_v2 u, v;
                 if (color_a->data[4 * i + 3] == 0 ||
                     memcmp(color_a->data + 4 * i, color_b->data + 4 * k, 4) != 0)
                     continue;
-                for (int c = 0; c < 4; c++) {
-                    (&p.x)[c] = (float)axial_a->data[4 * i + (size_t)c] / 255.0f;
-                    (&q.x)[c] = (float)axial_b->data[4 * k + (size_t)c] / 255.0f;
-                }
-                u = lao_axial_unpack(p);
-                v = lao_axial_unpack(q);
+                memcpy(&p, axial_a->data + 4 * i, sizeof p);
+                memcpy(&q, axial_b->data + 4 * k, sizeof q);
+                u = lao_level_direction(p, align);
+                v = lao_level_direction(q, align);
                 compared++;
                 if (align == LAO_ALIGN_PAPER)
                     wrong += fabsf(u.x * u.x + v.x * v.x - 1) > 2e-3f;
@@ -411,12 +409,14 @@ static void test_levels_mask(void **state) {
     color = render_find(&result, "color", 0);
     depth = render_find(&result, "depth", 0);
     for (uint32_t level = 0; level < 3; level++) {
-        const render_image *coarse = render_find(&result, "level_depth", level);
+        const render_image *coarse = render_find(&result, "level", level);
         uint32_t side = 1u << level;
         for (uint32_t i = 0; i < coarse->width * coarse->height; i++) {
             uint32_t x0 = i % coarse->width * side, y0 = i / coarse->width * side, count = 0;
-            const uint8_t *texel = coarse->data + 4 * (size_t)i;
-            double sum = 0, stored = (65536.0 * texel[0] + 256.0 * texel[1] + texel[2]) / 16777215;
+            uint32_t word;
+            double sum = 0, stored;
+            memcpy(&word, coarse->data + 4 * (size_t)i, sizeof word);
+            stored = (double)lao_level_depth(word);
             for (uint32_t y = y0; y < y0 + side && y < depth->height; y++) {
                 for (uint32_t x = x0; x < x0 + side && x < depth->width; x++) {
                     size_t at = (size_t)y * depth->width + x;
@@ -428,7 +428,7 @@ static void test_levels_mask(void **state) {
                     }
                 }
             }
-            assert_int_equal(texel[3], count > 0 ? 255 : 0);
+            assert_int_equal((word & LAO_LEVEL_NEAREST) != 0, count > 0);
             assert_true(fabs(stored - (count > 0 ? sum / count : 1)) < 1e-6);
             partly += count > 0 && count < side * side;
         }

@@ -481,8 +481,8 @@ static void every_image_reads_back(void **state) {
     assert_int_equal(lao_view_create(context, &desc, &view), LAO_OK);
     lao_set set = {fixture_lines_create(context, 0), fixture_settings(), {0}, NULL};
     lao_frame frame = fixture_frame(view, &set, 1);
-    static const char *const names[] = {"color", "tangent", "depth", "zbuffer",    "tensor",
-                                        "ao",    "shaded",  "out",   "level_depth"};
+    static const char *const names[] = {"color", "tangent", "depth",  "zbuffer",
+                                        "level", "ao",      "shaded", "out"};
     for (int round = 0; round < 2; round++) { /* reading leaves the images fit for the next frame */
         assert_rendered(&f, context, &frame);
         fixture_wait(&f);

@@ -479,10 +479,10 @@ static void what_is_no_volume(void **state) {
     must_fail_volume(&b, 1, NULL, 0, "not a volume");
     buffer_free(&b);
     b = make_vti(VTI_RAW, false, true, 0, NULL); /* and no line reader takes one */
-    must_fail(&b, "a.vti", NULL, "lines are read from PolyData");
+    must_fail(&b, "a.vti", NULL, "are read from PolyData");
     buffer_free(&b);
     b = make_points(true);
-    must_fail(&b, "a.vtk", NULL, "lines are read from POLYDATA");
+    must_fail(&b, "a.vtk", NULL, "are read from POLYDATA");
     buffer_free(&b);
     io_volume zero = {0};
     io_volume_free(&zero);

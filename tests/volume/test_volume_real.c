@@ -70,9 +70,9 @@ static double divergence(const io_volume *v, const uint32_t order[3]) {
 static void aorta(void **state) {
     static const uint32_t right[3] = {0, 1, 2}, wrong[3] = {2, 1, 0};
     (void)state;
-    io_volume v;
+    io_volume v = {0};
     if (!read_real("4dflownet_aorta_HR.h5", NULL, &v))
-        skip();
+        skip(); /* does not return */
     double largest = 0;
     assert_string_equal(v.format, "hdf5");
     assert_size(&v, 84, 76, 72);
@@ -95,9 +95,9 @@ static void aorta(void **state) {
 
 static void noisy_aorta(void **state) {
     (void)state;
-    io_volume v;
+    io_volume v = {0};
     if (!read_real("4dflownet_aorta_LR.h5", NULL, &v))
-        skip();
+        skip(); /* does not return */
     double largest = 0;
     assert_size(&v, 42, 38, 36);
     assert_near(v.to_mm[2][2], 1.188, 5e-4);
@@ -114,11 +114,11 @@ static void noisy_aorta(void **state) {
 
 static void carotid(void **state) {
     (void)state;
-    io_volume v;
+    io_volume v = {0};
     io_volume_options options;
     memset(&options, 0, sizeof options);
     if (!read_real("carotid.vtk", &options, &v))
-        skip();
+        skip(); /* does not return */
     assert_string_equal(v.format, "vtk");
     assert_size(&v, 76, 49, 45);
     const double box[2][3] = {{100, 80, 1}, {175, 128, 45}};

@@ -1,0 +1,4207 @@
+/* sdfvessel.h - vessel trees as signed distance fields, with a 2D layout of the tree. MIT licence,
+   see LICENSE.
+
+   A vessel tree is a set of nodes (position and radius, mm) and of segments between them; its
+   surface is the union of the round cones of all segments (Lichtenberg et al. 2019, "Distance Field
+   Visualization and 2D Abstraction of Vessel Tree Structures with on-the-fly Parameterization",
+   below L19). This header builds and mends trees, reduces them to branches, lays them out in 2D,
+   samples their distance field on a grid and traces rays through it. It includes lineao.h for
+   types, results, allocator, job and shared math only: no backend and no GPU is needed.
+
+   EXAMPLE
+       #define SDFVESSEL_IMPLEMENTATION     // in exactly one C or C++ file
+       #include "sdfvessel.h"
+
+       sdv_tree_desc desc = {0};
+       desc.node_count = 3;    desc.positions = positions;    desc.radii = radii;   // mm
+       desc.segment_count = 2; desc.segments = parent_child_pairs;
+       sdv_tree tree;
+       if (sdv_tree_build(NULL, &desc, &tree) != LAO_OK) return 1;  // NULL: malloc, serial, silent
+       sdv_reduced reduced;
+       sdv_reduce(NULL, &tree, &reduced);
+       sdv_layout layout;
+       sdv_layout_make(NULL, &tree, &reduced, NULL, &layout);
+       ...
+       sdv_layout_free(&layout); sdv_reduced_free(&reduced); sdv_tree_free(&tree);
+
+   CONFIGURATION (define before including)
+       SDFVESSEL_IMPLEMENTATION   the function bodies, in one translation unit
+       SDV_API                    linkage of the public functions (default: extern)
+
+   CONTRACTS
+       Units     millimetres, radians.
+       Errors    a failure returns one lao_result, logs one item (SDV_LOG_ITEMS) and leaves
+                 out-parameters untouched. What is merely odd is mended and logged as a warning: an
+                 item whose result is LAO_OK.
+       Memory    every byte comes from sdv_host.allocator; objects keep a copy of it for their free
+                 function, which is fine on an all-zero object.
+       Threads   no function keeps state outside its arguments: different objects may be used on
+                 different threads, and one object read on several. Work runs through sdv_host.job
+                 in fixed chunks, so that results do not depend on the number of threads.
+       Size      nothing recurses: a chain of a million nodes is as good as any tree. */
+#ifndef SDFVESSEL_H
+#define SDFVESSEL_H
+
+#include "lineao.h"
+
+#ifndef SDV_API
+#define SDV_API extern
+#endif
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/* ------------------------------------------------------------------------------------------------
+ * what can go wrong, what was mended */
+
+/* X(id, result, text). LAO_OK: a warning, the work went on. */
+#define SDV_LOG_ITEMS(X)                                                                           \
+    X(NULL_ARGUMENT, LAO_ERROR_INVALID_ARGUMENT, "a required pointer is NULL")                     \
+    X(MEMORY, LAO_ERROR_OUT_OF_MEMORY, "no memory")                                                \
+    X(CANCELLED, LAO_ERROR_NOT_READY, "the host cancelled the work")                               \
+    X(TREE_EMPTY, LAO_ERROR_INVALID_ARGUMENT, "a tree needs at least one node")                    \
+    X(TREE_COUNT, LAO_ERROR_INVALID_ARGUMENT, "more than 2^30 nodes or segments")                  \
+    X(TREE_POSITION, LAO_ERROR_INVALID_ARGUMENT,                                                   \
+      "a node's position is not finite or beyond 1e9 mm")                                          \
+    X(TREE_SEGMENT, LAO_ERROR_INVALID_ARGUMENT, "a segment names a node that does not exist")      \
+    X(TREE_ATTRIBUTE, LAO_ERROR_INVALID_ARGUMENT, "an attribute has no name or no values")         \
+    X(LAYOUT_PH, LAO_ERROR_INVALID_ARGUMENT, "p_h is negative or no number")                       \
+    X(IMAGE_SIZE, LAO_ERROR_INVALID_ARGUMENT,                                                      \
+      "an image needs 1 to 32768 pixels each way and 1 to 64 channels")                            \
+    X(TARGET_SHAPE, LAO_ERROR_INVALID_ARGUMENT,                                                    \
+      "a target needs points that are finite, and triangles of points that exist")                 \
+    X(GRID_CELLS, LAO_ERROR_INVALID_ARGUMENT,                                                      \
+      "the grid needs 16 to 512 cells along its longest axis and 2^24 in all at most")             \
+    X(GRID_LISTS, LAO_ERROR_INVALID_ARGUMENT,                                                      \
+      "more than 2^24 segments or entries of cell lists; fewer cells make shorter lists")          \
+    X(GRID_TREE, LAO_ERROR_INVALID_ARGUMENT, "the grid was built from another tree")               \
+    X(RADIUS_MISSING, LAO_OK,                                                                      \
+      "nodes have no radius (negative, no number or beyond 1e9 mm): 0 is taken")                   \
+    X(RADIUS_ZERO, LAO_OK, "nodes have radius 0")                                                  \
+    X(NODES_MERGED, LAO_OK, "points at the position of an earlier point became one node")          \
+    X(NODES_ISOLATED, LAO_OK, "points on no line were dropped")                                    \
+    X(SEGMENTS_LOOSE, LAO_OK, "segments from a node to itself were dropped")                       \
+    X(SEGMENTS_REPEATED, LAO_OK, "repeated segments were dropped")                                 \
+    X(SEGMENTS_ZERO, LAO_OK, "segments have length 0")                                             \
+    X(SEGMENTS_TURNED, LAO_OK, "segments pointed to the root and were turned round")               \
+    X(LINES_JOINED, LAO_OK, "ends of lines lay inside another line and were joined to it")         \
+    X(TREE_ROOTS, LAO_OK, "the tree has several roots")                                            \
+    X(TREE_LOOPS, LAO_OK, "segments close loops; the tree is a graph, they are kept")
+
+typedef enum sdv_log_item {
+#define SDV__ENUM(id, result, text) SDV_LOG_##id,
+    SDV_LOG_ITEMS(SDV__ENUM)
+#undef SDV__ENUM
+        SDV_LOG_ITEM_COUNT
+} sdv_log_item;
+
+/* What the host lends to a call. All zero, or NULL instead: malloc, serial, silent. */
+typedef struct sdv_host {
+    lao_allocator allocator;
+    lao_job job;
+    /* One call per failure (result != LAO_OK) or warning (LAO_OK). `text` is the item's sentence
+       with a place or a number; valid during the call. */
+    void (*log)(void *user, sdv_log_item item, lao_result result, const char *text);
+    void *user;
+} sdv_host;
+
+/* ------------------------------------------------------------------------------------------------
+ * the tree */
+
+#define SDV_NONE 0xffffffffu
+
+/* A named array of `components` floats per node or segment. NaN means no value. */
+typedef struct sdv_attribute {
+    const char *name;
+    uint32_t components; /* 0: 1 */
+    const float *values;
+} sdv_attribute;
+
+typedef struct sdv_segment {
+    uint32_t parent, child; /* nodes */
+} sdv_segment;
+
+enum {
+    SDV_TREE_MERGE = 1,      /* points at bit-equal positions are one node (VTP, VTK centrelines) */
+    SDV_TREE_DROP = 2,       /* points on no segment are no nodes */
+    SDV_TREE_JOIN = 4,       /* an end of a line inside a sphere of another line is joined to it */
+    SDV_TREE_UNDIRECTED = 8, /* the direction of a segment means nothing */
+    SDV_TREE_LINES = 15      /* all four: what a set of centrelines wants */
+};
+
+/* Arrays are borrowed during the call. */
+typedef struct sdv_tree_desc {
+    uint32_t node_count;
+    const float *positions;      /* 3 per node, mm */
+    const float *radii;          /* (Optional) 1 per node, mm; NULL: all 0 */
+    uint32_t segment_count;      /* 0 with one node: a ball */
+    const sdv_segment *segments; /* any order, parents before or behind their children */
+    uint32_t flags;              /* SDV_TREE_... */
+    const sdv_attribute *node_attributes, *segment_attributes;
+    uint32_t node_attribute_count, segment_attribute_count;
+} sdv_tree_desc;
+
+/* Counts and ranges. */
+typedef struct sdv_tree_info {
+    uint32_t nodes, segments;
+    uint32_t roots;           /* one per connected component */
+    uint32_t leaves;          /* no child and not a root */
+    uint32_t branches;        /* 2 children or more */
+    uint32_t multifurcations; /* 3 children or more */
+    uint32_t max_children;
+    uint32_t loops;     /* segments - nodes + roots */
+    uint32_t joined;    /* segments added by SDV_TREE_JOIN, the last ones of the tree */
+    float radius[2];    /* least and greatest as given; 0, 0 where none is a number */
+    float bounds[2][3]; /* mm, of the nodes' centres */
+} sdv_tree_info;
+
+/* One kind of warning of a tree. */
+typedef struct sdv_warning {
+    sdv_log_item item;
+    uint32_t count; /* how many nodes, segments, roots, loops */
+    uint32_t first; /* the first of them: index in the desc's array (nodes, segments), or node */
+} sdv_warning;
+
+/* A tree: read its arrays freely, change only `nodes` (then sdv_grid_update). Node and segment
+   indices keep the order of the desc. The children of a node are counted by its segments; `parents`
+   and `order` follow one spanning tree per root, so that they exist in graphs with loops too. */
+typedef struct sdv_tree {
+    uint32_t node_count, segment_count, root_count;
+    lao_v4 *nodes;             /* x, y, z, radius, mm */
+    sdv_segment *segments;     /* turned so that parents are nearer to the root along the tree */
+    uint32_t *roots;           /* root_count nodes, ascending by component's lowest node */
+    uint32_t *parents;         /* per node: its parent, SDV_NONE at a root */
+    uint32_t *parent_segments; /* per node: the segment to its parent, SDV_NONE at a root */
+    uint32_t *components;      /* per node: index in roots */
+    uint32_t *order;           /* all nodes, parents before children */
+    uint32_t *child_counts;    /* per node: segments that leave it */
+    uint32_t *node_sources;    /* per node: index in the desc (the first of merged points) */
+    uint32_t *segment_sources; /* per segment: index in the desc; SDV_NONE: added by joining */
+    uint32_t *node_targets;    /* per node of the desc: node here, SDV_NONE: dropped */
+    uint32_t source_count;     /* entries of node_targets */
+    sdv_attribute *node_attributes, *segment_attributes;
+    uint32_t node_attribute_count, segment_attribute_count;
+    sdv_tree_info info;
+    sdv_warning warnings[SDV_LOG_ITEM_COUNT];
+    uint32_t warning_count;
+    lao_allocator allocator; /* private */
+    void *memory;            /* private */
+} sdv_tree;
+
+/* Builds a tree from arrays, mends what is odd and counts it (DESIGN.md 10, "Tree"):
+   - a radius that is negative or no number becomes 0; merged points take the greatest radius;
+   - segments from a node to itself and repeated ones (either direction) go; other segments of
+   length 0 stay, because ids rule in formats that have them;
+   - a component's root is the node that no segment enters, the lowest if there are several; without
+     one, or with SDV_TREE_UNDIRECTED, the first node of the component's first segment. From there
+     segments are followed along their direction first, against it (and turned) only where nothing
+     else reaches a node;
+   - loops are kept: as segments, not in `parents`;
+   - SDV_TREE_JOIN adds a segment from the nearest node of another component whose sphere holds an
+     end of a line (a node with one segment or none), end by end in ascending order, unless that
+     would close a loop. Added segments have NaN attributes.
+   Linear time but for the sorting of segments. Fails with NULL_ARGUMENT, MEMORY, TREE_EMPTY,
+   TREE_COUNT, TREE_POSITION, TREE_SEGMENT, TREE_ATTRIBUTE. Thread: any. */
+SDV_API lao_result sdv_tree_build(const sdv_host *host, const sdv_tree_desc *desc, sdv_tree *tree);
+SDV_API void sdv_tree_free(sdv_tree *tree);
+/* The text of warning i, as it was logged: "3 nodes have radius 0, first: 17". Returns its length,
+   which may exceed size - 1; `text` is always terminated. */
+SDV_API size_t sdv_tree_warning_text(const sdv_tree *tree, uint32_t i, char *text, size_t size);
+
+/* ------------------------------------------------------------------------------------------------
+ * the reduced tree and its layout */
+
+/* Roots, branches and leaves, made binary (L19 3, METHODS 8): a node with n > 2 children keeps the
+   first and gets an extra node with the rest; a root with several children gets one extra child.
+   Children ascend by id. Loops are cut (sdv_tree.parents). */
+typedef struct sdv_reduced {
+    uint32_t node_count, root_count;
+    uint32_t *ids;   /* the tree's node, or from tree.node_count on: an extra node */
+    uint32_t *nodes; /* the tree's node where this one is drawn; an extra node: that of its owner */
+    uint32_t *parents;  /* index here, SDV_NONE at a root */
+    uint32_t *children; /* 2 per node: indices here, SDV_NONE: none; a root has one at most */
+    uint32_t *order;    /* all nodes, parents before children */
+    uint32_t *roots;    /* root_count indices here */
+    uint32_t *owners;   /* per node of the tree: index here of the first reduced node at it or below
+                           it, whose edge it lies on */
+    lao_allocator allocator; /* private */
+    void *memory;            /* private */
+} sdv_reduced;
+
+SDV_API lao_result sdv_reduce(const sdv_host *host, const sdv_tree *tree, sdv_reduced *reduced);
+SDV_API void sdv_reduced_free(sdv_reduced *reduced);
+
+enum {
+    SDV_LAYOUT_ALL_NODES =
+        1,             /* weights sum over all nodes of the tree, not only the reduced ones */
+    SDV_LAYOUT_OWN = 2 /* a node's scalar is its weight: no sum over the sub-tree */
+};
+
+typedef struct sdv_layout_desc {
+    const float
+        *scalars;    /* (Optional) per node of the tree, > 0; NULL: 1, weights are node counts */
+    float ph;        /* >= 0; how much unbalanced sub-trees close up; used when has_ph */
+    uint32_t has_ph; /* 0: 4 / node_count of the reduced tree */
+    uint32_t flags;  /* SDV_LAYOUT_... */
+} sdv_layout_desc;
+
+typedef struct sdv_layout {
+    uint32_t node_count; /* of the reduced tree; arrays are in its order */
+    float *h;            /* [0, 1], across; hue in turns; angle of the radial drawing in turns */
+    float *s;            /* [0, 1], 1 at the root, 0 at the deepest leaf; saturation */
+    float *weights;
+    lao_allocator allocator; /* private */
+    void *memory;            /* private */
+} sdv_layout;
+
+/* Algorithm 1 of L19 with METHODS 8. `desc` NULL: defaults. A scalar that is not a positive finite
+   number counts as 0; a sub-tree of weight 0 as the least positive weight. Several roots share
+   [0, 1] across in proportion to their weights. No recursion, O(n). */
+SDV_API lao_result sdv_layout_make(const sdv_host *host, const sdv_tree *tree,
+                                   const sdv_reduced *reduced, const sdv_layout_desc *desc,
+                                   sdv_layout *layout);
+SDV_API void sdv_layout_free(sdv_layout *layout);
+
+/* Receives text piece by piece; non-zero stops the writer, which returns it. */
+typedef struct sdv_writer {
+    int (*write)(void *user, const char *text, size_t length);
+    void *user;
+} sdv_writer;
+
+/* {"nodes":[{"id","parent","h","s","weight","distance"}]} (DESIGN.md 10): id = node of the tree,
+   extra nodes from tree.node_count on; parent -1 at a root. `distances` (Optional): per reduced
+   node, mm, written as null where NaN; NULL: all null. */
+SDV_API int sdv_layout_write_json(const sdv_reduced *reduced, const sdv_layout *layout,
+                                  const float *distances, const sdv_writer *writer);
+
+typedef struct sdv_svg_desc {
+    float width, height; /* px; 0: 1024 x 512, radial 768 x 768 */
+    uint32_t radial;     /* non-zero: angle h, radius 1 - s */
+    float line_width;    /* px; 0: 2 */
+    const float
+        *distances; /* (Optional) per reduced node, mm: nodes nearer than `risk` are marked */
+    float risk;     /* mm */
+} sdv_svg_desc;
+/* The layout as SVG: one line per edge in the colour of its lower node, sdv_hsv(h, s, 1). `desc`
+ * NULL: defaults. */
+SDV_API int sdv_layout_write_svg(const sdv_reduced *reduced, const sdv_layout *layout,
+                                 const sdv_svg_desc *desc, const sdv_writer *writer);
+
+/* ------------------------------------------------------------------------------------------------
+ * the distance field on a grid */
+
+typedef struct sdv_grid_desc {
+    uint32_t resolution; /* cells along the longest axis, 16 .. 512; 0: 128 */
+    const float *origin; /* (Optional) keep an earlier grid's box: its origin (3), cell and size; */
+    float cell;          /* the tree must lie inside. NULL: the bounds of all balls and 2 cells */
+    uint32_t size[3];
+} sdv_grid_desc;
+
+/* The field of a tree (METHODS 5), ready for upload as texel buffers. A cone is a segment, or
+   behind them a node that no segment touches (a ball); `cone_count` may thus exceed
+   tree.segment_count. Cell (x, y, z) has index x + size[0] (y + size[1] z) and lists, in ascending
+   order, the cones whose signed distance at its centre is at most 2 cells, inside ones too. Hence,
+   from any point of the cell, every surface nearer than 1.13 cells is in its list, and an empty
+   list means that there is none. Texel of a cell: x  distance at the centre, mm: exact where the
+   list is not empty; else that to the list of the nearest cell that has one, d <= x <= d + 1.74
+   cells y  that nearest cell (itself where occupied; ties: the lowest index) z  occupied: place of
+   its list in `ids`; else how far a ray may go from any point of the cell, mm w  length of the list
+   Memory: 20 bytes a cell, 4 an entry of the lists, 40 a cone. */
+typedef struct sdv_grid {
+    lao_v3 origin; /* lower corner, mm */
+    float cell;    /* mm */
+    uint32_t size[3];
+    uint32_t cell_count, id_count, cone_count;
+    lao_v4 *cells;        /* cell_count */
+    float *ids;           /* id_count: numbers of cones */
+    lao_v4 *cones;        /* 2 per cone: centre and radius of both ends (parent, child) */
+    uint32_t *cone_nodes; /* 2 per cone: the nodes */
+    uint32_t *layer;      /* private: per cell x + 65536 y of the nearest occupied one at its z */
+    uint32_t rebuilt;     /* sdv_grid_update: 1 when it had to build everything anew */
+    lao_allocator allocator; /* private */
+} sdv_grid;
+
+/* Builds the field. Work is split by layers, so the result does not depend on threads. Fails with
+   NULL_ARGUMENT, MEMORY, CANCELLED, GRID_CELLS, GRID_LISTS. `desc` NULL: defaults. */
+SDV_API lao_result sdv_grid_build(const sdv_host *host, const sdv_tree *tree,
+                                  const sdv_grid_desc *desc, sdv_grid *grid);
+/* After the host changed tree->nodes[nodes[i]], i < count: rebuilds what depends on them, to the
+   same bits as sdv_grid_build in the same box. A tree that has left the box gets a new one
+   (`rebuilt`). On failure, or when cancelled, the grid is as before. */
+SDV_API lao_result sdv_grid_update(const sdv_host *host, const sdv_tree *tree,
+                                   const uint32_t *nodes, uint32_t count, sdv_grid *grid);
+SDV_API void sdv_grid_free(sdv_grid *grid);
+/* Signed distance at any point, mm: exact within 1.13 cells of a surface and inside, else at
+   most 3.5 cells too great (mostly not at all). `cone` (Optional) gets the nearest one. Thread:
+   any. */
+SDV_API float sdv_grid_distance(const sdv_grid *grid, lao_v3 p, uint32_t *cone);
+/* The same by going through all cones: the oracle. */
+SDV_API float sdv_cones_distance(const lao_v4 *cones, uint32_t count, lao_v3 p, uint32_t *cone);
+
+enum { SDV_TRACE_NEAREST = 1 /* also d_min and t_min */ };
+
+typedef struct sdv_ray {
+    lao_v3 origin, direction; /* mm; unit */
+    uint32_t flags;           /* SDV_TRACE_... */
+    float reach; /* mm: d_min does not matter beyond this, and may then be too great; 0: it
+                    does, at several times the cost of a ray */
+} sdv_ray;
+
+typedef struct sdv_hit {
+    uint32_t cone;   /* SDV_NONE: no hit */
+    float t;         /* mm along the ray */
+    lao_v3 position; /* mm */
+    lao_v3 normal;   /* unit, towards the viewer: the field's gradient, turned round when the ray
+                        starts inside a vessel */
+    float d_min;     /* mm; hit: the least local minimum on the way (a near miss), SDV_FAR: none; no
+                        hit: the least distance of the ray to the tree, exact up to 2 cells, beyond
+                        rarely up to a third too great */
+    float t_min;     /* where that is */
+    uint32_t inside; /* non-zero: the ray starts inside a vessel and hits its wall from within */
+    uint32_t steps;
+} sdv_hit;
+
+/* Sphere tracing (METHODS 5.3), the oracle of the shaders: the first point of the ray, t >= 0, on
+   the surface, |distance| < 1e-3 cell there. No vessel is missed, however thin. A ray that starts
+   inside a vessel goes to where it leaves the union: the viewer sees the inner wall. Thread: any.
+ */
+SDV_API void sdv_trace(const sdv_grid *grid, const sdv_ray *ray, sdv_hit *hit);
+
+/* ------------------------------------------------------------------------------------------------
+ * what the field gives for free */
+
+enum { SDV_UNION = 0, SDV_INTERSECTION = 1, SDV_SUBTRACTION = 2 };
+enum { SDV_SHAPE_BALL = 0, SDV_SHAPE_BOX = 1, SDV_SHAPE_PLANE = 2 };
+
+/* Traces the tree combined with shapes, one after the other (L19 Fig. 11: max(a, -b) and so on):
+   hit->cone is SDV_NONE - 1 where the surface is a shape's, and `shape` (Optional) says which; its
+   normal is the shape's, turned inwards where it cuts. No d_min. Thread: any. */
+struct sdv_shape;
+#define SDV_CUT_CONE (SDV_NONE - 1u)
+SDV_API void sdv_trace_shapes(const sdv_grid *grid, const struct sdv_shape *shapes, uint32_t count,
+                              const sdv_ray *ray, sdv_hit *hit, uint32_t *shape);
+/* Light that reaches p, 0 .. 1, from the unit direction `light`, past what the field says is near
+   the way: 1 / hardness is the light's radius as seen from p. `bias` (mm) is the start, off the
+   surface. */
+SDV_API float sdv_shadow(const sdv_grid *grid, lao_v3 p, lao_v3 light, float hardness, float bias);
+/* Openness of p along its normal, 0 .. 1, from the field at 5 places up to `reach` mm away. */
+SDV_API float sdv_openness(const sdv_grid *grid, lao_v3 p, lao_v3 normal, float reach);
+
+/* What distances are measured to: a ball, a path, a surface. */
+typedef struct sdv_target_desc {
+    uint32_t point_count;
+    const float *points; /* 3 each, mm; without triangles a path through them, or one point */
+    uint32_t triangle_count;
+    const uint32_t *triangles; /* (Optional) 3 points each */
+    float radius;              /* mm, around all of it: a ball is one point with a radius */
+} sdv_target_desc;
+typedef struct sdv_target sdv_target;
+
+/* Copies the shape into a hierarchy of balls. Fails with NULL_ARGUMENT, MEMORY, TARGET_SHAPE. */
+SDV_API lao_result sdv_target_create(const sdv_host *host, const sdv_target_desc *desc,
+                                     sdv_target **target);
+SDV_API void sdv_target_free(sdv_target *target);
+/* Distance of a point to the target, mm; negative inside its radius only. Thread: any. */
+SDV_API float sdv_target_point(const sdv_target *target, lao_v3 p);
+/* Least signed distance to the round cone of the target's points, less its radius, exact: negative
+   where they overlap. A closed surface around a cone does not touch it. Thread: any. */
+SDV_API float sdv_target_cone(const sdv_target *target, lao_v4 a, lao_v4 b);
+/* Per segment of the tree (`segments`, Optional) and per reduced node (`nodes`, Optional): the
+   least over the segments from the node up to its reduced parent; NaN at roots and extra nodes. */
+SDV_API lao_result sdv_target_distances(const sdv_host *host, const sdv_target *target,
+                                        const sdv_tree *tree, const sdv_reduced *reduced,
+                                        float *segments, float *nodes);
+
+/* ------------------------------------------------------------------------------------------------
+ * pull-push */
+
+enum { SDV_PULL_MEAN = 0, SDV_PULL_SUM = 1 };     /* weight of a child: 1/4, 1 */
+enum { SDV_PUSH_EQUAL = 0, SDV_PUSH_SPLINE = 1 }; /* the 4 nearest parents: 1/4; 9, 3, 3, 1 / 16 */
+
+typedef struct sdv_pull_push_desc {
+    uint32_t width, height, channels;
+    float *values;     /* channels per pixel; in: where weights > 0, out: everywhere */
+    float *weights;    /* 1 per pixel, >= 0 (else 0); out: 1 everywhere */
+    uint32_t pull;     /* SDV_PULL_... */
+    uint32_t push;     /* SDV_PUSH_... */
+    uint32_t exponent; /* k, 1 .. 1023: how little a pixel takes over from its parents; 0: 1 */
+} sdv_pull_push_desc;
+
+/* Fills an image from its weighted pixels by a pyramid of ceil-halved levels (L19 3.3 with METHODS
+   6). Nothing to fill from: values become 0, weights stay 0, *empty (Optional) is 1. Fails with
+   NULL_ARGUMENT, IMAGE_SIZE, MEMORY, CANCELLED (the image is then in between). */
+SDV_API lao_result sdv_pull_push(const sdv_host *host, const sdv_pull_push_desc *desc,
+                                 uint32_t *empty);
+
+/* ------------------------------------------------------------------------------------------------
+ * drawing: a module for lao_desc.modules, whose object is a grid */
+
+/* X(name, TYPE, minimum, maximum, default, structural, unit, choices, help), as LAO_SETTINGS. */
+#define SDV_SETTINGS(X)                                                                            \
+    X(near_miss, ENUM, 0, 2, 0, 1, "", "close|exact|none",                                         \
+      "keep how near rays came to other vessels: silhouettes, contours, depth shadows")            \
+    X(silhouette, FLOAT, 0, 1000, 0.5f, 0, "mm", "", "width of the outline around vessels")        \
+    X(contour, FLOAT, 0, 1000, 0.25f, 0, "mm", "", "width of outlines in front of other vessels")  \
+    X(shadow_ratio, FLOAT, 0, 10, 0.15f, 0, "", "",                                                \
+      "width of a depth shadow per distance behind the edge (m of L19 Fig. 8)")                    \
+    X(shadow_width, FLOAT, 0, 100, 2, 0, "%", "",                                                  \
+      "widest depth shadow, of the scene's diameter (a of L19 Fig. 8)")                            \
+    X(shadow_strength, FLOAT, 0, 1, 0.6f, 0, "", "", "light that a depth shadow takes away")       \
+    X(field_occlusion, BOOL, 0, 1, 1, 1, "", "", "ambient occlusion from the distance field")      \
+    X(occlusion_reach, FLOAT, 0.01f, 100, 4, 0, "%", "",                                           \
+      "how far field occlusion looks, of the scene's diameter")                                    \
+    X(occlusion_strength, FLOAT, 0, 5, 1, 0, "", "", "light that field occlusion takes away")      \
+    X(surface_ambient, FLOAT, 0, 1, 0.25f, 0, "", "", "ambient part of a surface's illumination")  \
+    X(surface_diffuse, FLOAT, 0, 2, 0.7f, 0, "", "", "diffuse part of a surface's illumination")   \
+    X(surface_specular, FLOAT, 0, 2, 0.2f, 0, "", "", "specular part of a surface's illumination") \
+    X(surface_shininess, INT, 1, 1000, 40, 1, "", "", "Phong exponent of a surface")
+
+/* What a vessel tree looks like; as lao_settings: zero is the default unless its bit is set. */
+typedef struct sdv_settings {
+    uint64_t set;
+#define SDV__FIELD(name, type, minimum, maximum, standard, structural, unit, choices, help)        \
+    float name;
+    SDV_SETTINGS(SDV__FIELD)
+#undef SDV__FIELD
+} sdv_settings;
+
+typedef enum sdv_setting {
+#define SDV__ENUM(name, type, minimum, maximum, standard, structural, unit, choices, help)         \
+    SDV_SETTING_ID_##name,
+    SDV_SETTINGS(SDV__ENUM)
+#undef SDV__ENUM
+        SDV_SETTING_COUNT
+} sdv_setting;
+#define SDV_SET(name) ((uint64_t)1 << SDV_SETTING_ID_##name)
+
+/* Passes, images and settings that draw trees among a scene's lines. Static. Thread: any. */
+SDV_API const lao_module *sdv_module(void);
+
+/* A grid as the object of a set. `desc` refers to the struct itself and to the grid's arrays: it
+   must not move, and both must live until lao_object_create or _update returns. */
+typedef struct sdv_object {
+    lao_object_desc desc;
+    lao_object_buffer buffers[5];
+    lao_v4 box[2];
+    uint8_t *colors; /* private */
+    lao_allocator allocator;
+} sdv_object;
+
+/* Describes a grid for lao_object_create. `colors`: (Optional) 8 bytes a cone: RGBA at its first
+   and at its second end, display values; NULL: all alike. Free with sdv_object_free. Fails with
+   NULL_ARGUMENT, MEMORY. */
+SDV_API lao_result sdv_object_make(const sdv_host *host, const sdv_grid *grid,
+                                   const uint8_t *colors, sdv_object *object);
+SDV_API void sdv_object_free(sdv_object *object);
+
+#ifdef __cplusplus
+}
+#endif
+
+/* -------------------------------------------------------------------------------------------------------
+   shared text From here to SDV_SHARED_END the text is C99, C++11 and GLSL at once, behind
+   lineao.h's (same rules: see there). */
+/* SDV_SHARED_BEGIN */
+/* ---- round cones (L19 3.2 with METHODS 4): a, b = centre and radius of the two ends, mm */
+/* A point seen from a cone, in the plane of the cone's axis and the point. */
+struct sdv_cone_point {
+    float distance; /* signed, mm */
+    float part;     /* -1: ball a is nearest, 1: ball b, 0: the cone between them */
+    float x, y;     /* between: along the axis from a, and away from it */
+    float s, l, d;  /* between: length of the axis, of the tangent; radius of a less that of b */
+    lao_v3 axis;    /* between: unit, from a to b */
+    lao_v3 away;    /* from the axis or the ball's centre to the point, not unit */
+    float apart;    /* length of away */
+};
+#ifndef LAO_GLSL
+typedef struct sdv_cone_point sdv_cone_point;
+#endif
+LAO_FN sdv_cone_point sdv_cone_point_ball(sdv_cone_point c, lao_v3 p, lao_v4 ball, float part) {
+    sdv_cone_point r = c;
+    r.away = lao_v3_sub(p, lao_v3_make(ball.x, ball.y, ball.z));
+    LAO_EXACT float length = lao_sqrt(lao_v3_dot(r.away, r.away));
+    r.apart = length;
+    r.distance = length - ball.w;
+    r.part = part;
+    return r;
+}
+LAO_FN sdv_cone_point sdv_cone_point_make(lao_v3 p, lao_v4 a, lao_v4 b) {
+    sdv_cone_point c;
+    lao_v3 q = lao_v3_sub(p, lao_v3_make(a.x, a.y, a.z));
+    lao_v3 ab = lao_v3_make(b.x - a.x, b.y - a.y, b.z - a.z);
+    LAO_EXACT float s = lao_sqrt(lao_v3_dot(ab, ab));
+    LAO_EXACT float d = a.w - b.w;
+    LAO_EXACT float least = lao_abs(d) + 1.0e-6f * lao_max(a.w, b.w);
+    c.s = s;
+    c.d = d;
+    c.l = 0.0f;
+    c.x = 0.0f;
+    c.y = 0.0f;
+    c.axis = ab;
+    if (!(s > least)) { /* one ball holds the other */
+        if (d < 0.0f) {
+            return sdv_cone_point_ball(c, p, b, 1.0f);
+        }
+        return sdv_cone_point_ball(c, p, a, -1.0f);
+    }
+    LAO_EXACT float inverse = 1.0f / s;
+    c.axis = lao_v3_scale(ab, inverse);
+    LAO_EXACT float x = lao_v3_dot(q, c.axis);
+    c.away = lao_v3_along(q, c.axis, -x);
+    LAO_EXACT float y = lao_sqrt(lao_v3_dot(c.away, c.away));
+    LAO_EXACT float l = lao_sqrt((s - d) * (s + d));
+    LAO_EXACT float u = (l * x - d * y) * inverse;
+    if (u < 0.0f) {
+        return sdv_cone_point_ball(c, p, a, -1.0f);
+    }
+    if (u > l) {
+        return sdv_cone_point_ball(c, p, b, 1.0f);
+    }
+    LAO_EXACT float distance = (d * x + l * y) * inverse - a.w;
+    c.distance = distance;
+    c.part = 0.0f;
+    c.x = x;
+    c.y = y;
+    c.l = l;
+    c.apart = y;
+    return c;
+}
+/* Signed distance in mm, exact outside and inside; one ball when it holds the other (Eqs. 1-3,
+   corrected). */
+LAO_FN float sdv_round_cone(lao_v3 p, lao_v4 a, lao_v4 b) {
+    sdv_cone_point c = sdv_cone_point_make(p, a, b);
+    return c.distance;
+}
+/* Any unit vector at a right angle to the unit vector v. */
+LAO_FN lao_v3 sdv_perpendicular(lao_v3 v) {
+    LAO_EXACT float x = lao_abs(v.x);
+    LAO_EXACT float y = lao_abs(v.y);
+    LAO_EXACT float z = lao_abs(v.z);
+    lao_v3 least = lao_v3_make(0.0f, 0.0f, 1.0f);
+    if (x <= y && x <= z) {
+        least = lao_v3_make(1.0f, 0.0f, 0.0f);
+    } else if (y <= z) {
+        least = lao_v3_make(0.0f, 1.0f, 0.0f);
+    }
+    return lao_v3_unit(lao_v3_cross(v, least), least);
+}
+/* Gradient of the distance: a unit vector, the outward normal on the surface. At the centre of a
+   ball and on the axis any of the possible ones. */
+LAO_FN lao_v3 sdv_round_cone_gradient(lao_v3 p, lao_v4 a, lao_v4 b) {
+    sdv_cone_point c = sdv_cone_point_make(p, a, b);
+    if (c.part != 0.0f) {
+        return lao_v3_unit(c.away, lao_v3_make(0.0f, 0.0f, 1.0f));
+    }
+    lao_v3 away = lao_v3_unit(c.away, sdv_perpendicular(c.axis));
+    LAO_EXACT float along = c.d / c.s;
+    LAO_EXACT float outward = c.l / c.s;
+    return lao_v3_unit(lao_v3_along(lao_v3_scale(away, outward), c.axis, along), away);
+}
+/* Slope of the distance along a unit direction: gradient times direction. */
+LAO_FN float sdv_cone_slope(sdv_cone_point c, lao_v3 direction) {
+    LAO_EXACT float away = lao_v3_dot(c.away, direction) / lao_max(c.apart, 1.0e-30f);
+    if (c.part != 0.0f) {
+        return away;
+    }
+    LAO_EXACT float slope = (c.d * lao_v3_dot(c.axis, direction) + c.l * away) / c.s;
+    return slope;
+}
+
+/* ---- colours */
+/* Hue in turns, saturation, value to RGB. */
+LAO_FN lao_v3 sdv_hsv(float h, float s, float v) {
+    LAO_EXACT float t = 6.0f * (h - lao_floor(h));
+    LAO_EXACT float r = lao_clamp01(lao_abs(t - 3.0f) - 1.0f);
+    LAO_EXACT float g = lao_clamp01(2.0f - lao_abs(t - 2.0f));
+    LAO_EXACT float b = lao_clamp01(2.0f - lao_abs(t - 4.0f));
+    LAO_EXACT float x = v * (1.0f - s * (1.0f - r));
+    LAO_EXACT float y = v * (1.0f - s * (1.0f - g));
+    LAO_EXACT float z = v * (1.0f - s * (1.0f - b));
+    return lao_v3_make(x, y, z);
+}
+/* Place of (h, s) in the radial drawing, in the unit disc: the root in the middle (L19 3.1). */
+LAO_FN lao_v2 sdv_radial(float h, float s) {
+    LAO_EXACT float reach = 1.0f - s;
+    LAO_EXACT float x = reach * lao_cos_turns(h);
+    LAO_EXACT float y = reach * lao_sin_turns(h);
+    return lao_v2_make(x, y);
+}
+/* ---- grid and tracing (L19 3.2 with METHODS 5) */
+#define SDV_FAR 1.0e30f
+#define SDV_MAX_STEPS 1024
+/* A box of cubic cells: lower corner, edge of a cell in mm, cells along each axis. */
+struct sdv_box {
+    lao_v3 origin;
+    float cell;
+    lao_v3 size;
+};
+#ifndef LAO_GLSL
+typedef struct sdv_box sdv_box;
+#endif
+LAO_FN lao_v3 sdv_cell_centre(sdv_box box, lao_uint x, lao_uint y, lao_uint z) {
+    LAO_EXACT float cx = box.origin.x + (LAO_F(x) + 0.5f) * box.cell;
+    LAO_EXACT float cy = box.origin.y + (LAO_F(y) + 0.5f) * box.cell;
+    LAO_EXACT float cz = box.origin.z + (LAO_F(z) + 0.5f) * box.cell;
+    return lao_v3_make(cx, cy, cz);
+}
+/* Index of the cell that holds p, or of the one nearest to it. */
+LAO_FN lao_int sdv_cell_at(sdv_box box, lao_v3 p) {
+    LAO_EXACT float x = lao_floor((p.x - box.origin.x) / box.cell);
+    LAO_EXACT float y = lao_floor((p.y - box.origin.y) / box.cell);
+    LAO_EXACT float z = lao_floor((p.z - box.origin.z) / box.cell);
+    lao_int ix = LAO_I(lao_min(lao_max(0.0f, x), box.size.x - 1.0f));
+    lao_int iy = LAO_I(lao_min(lao_max(0.0f, y), box.size.y - 1.0f));
+    lao_int iz = LAO_I(lao_min(lao_max(0.0f, z), box.size.z - 1.0f));
+    return ix + LAO_I(box.size.x) * (iy + LAO_I(box.size.y) * iz);
+}
+/* What a cell lists: cones up to this distance from its centre, mm. */
+LAO_FN float sdv_list_reach(float cell) {
+    return 2.0f * cell;
+}
+/* From anywhere in a cell, what is nearer than this is in its list: 2 - sqrt(3) / 2, less rounding.
+ */
+LAO_FN float sdv_near_reach(float cell) {
+    return 1.125f * cell;
+}
+/* How far a ray may go from anywhere in an empty cell whose centre is `apart` mm from the nearest
+   centre of an occupied cell. The surface is 2 - sqrt(3) / 2 cells or more behind the last empty
+   cell on the way to it: apart + 2 - sqrt(3) from the centre, another sqrt(3) / 2 less from p. */
+LAO_FN float sdv_far_step(float apart, float cell) {
+    LAO_EXACT float step = apart - 0.6f * cell;
+    return lao_max(step, sdv_near_reach(cell));
+}
+/* Part of the ray inside the box: from x to y, x > y where it misses. */
+LAO_FN float sdv_ray_slope(float d) {
+    LAO_EXACT float r = 1.0f / (lao_abs(d) < 1.0e-12f ? (d < 0.0f ? -1.0e-12f : 1.0e-12f) : d);
+    return r;
+}
+LAO_FN lao_v2 sdv_ray_box(lao_v3 origin, lao_v3 direction, sdv_box box) {
+    lao_v3 slope = lao_v3_make(sdv_ray_slope(direction.x), sdv_ray_slope(direction.y),
+                               sdv_ray_slope(direction.z));
+    LAO_EXACT float x0 = (box.origin.x - origin.x) * slope.x;
+    LAO_EXACT float y0 = (box.origin.y - origin.y) * slope.y;
+    LAO_EXACT float z0 = (box.origin.z - origin.z) * slope.z;
+    LAO_EXACT float x1 = (box.origin.x + box.size.x * box.cell - origin.x) * slope.x;
+    LAO_EXACT float y1 = (box.origin.y + box.size.y * box.cell - origin.y) * slope.y;
+    LAO_EXACT float z1 = (box.origin.z + box.size.z * box.cell - origin.z) * slope.z;
+    LAO_EXACT float from =
+        lao_max(lao_max(lao_min(x0, x1), lao_min(y0, y1)), lao_max(lao_min(z0, z1), 0.0f));
+    LAO_EXACT float to = lao_min(lao_min(lao_max(x0, x1), lao_max(y0, y1)), lao_max(z0, z1));
+    return lao_v2_make(from, to);
+}
+
+/* Distance of p to the box, 0 inside. */
+LAO_FN float sdv_box_distance(lao_v3 p, sdv_box box) {
+    LAO_EXACT float x = lao_max(box.origin.x - p.x, p.x - box.origin.x - box.size.x * box.cell);
+    LAO_EXACT float y = lao_max(box.origin.y - p.y, p.y - box.origin.y - box.size.y * box.cell);
+    LAO_EXACT float z = lao_max(box.origin.z - p.z, p.z - box.origin.z - box.size.z * box.cell);
+    lao_v3 apart = lao_v3_make(lao_max(x, 0.0f), lao_max(y, 0.0f), lao_max(z, 0.0f));
+    LAO_EXACT float r = lao_sqrt(lao_v3_dot(apart, apart));
+    return r;
+}
+
+/* The nearest of the cones of a list at a point of a ray, and how far the ray may go before it can
+   meet any of them. */
+struct sdv_near {
+    float distance, advance, cone;
+};
+#ifndef LAO_GLSL
+typedef struct sdv_near sdv_near;
+#endif
+LAO_FN sdv_near sdv_near_start(float reach) {
+    sdv_near n;
+    n.distance = SDV_FAR;
+    n.advance = reach;
+    n.cone = -1.0f;
+    return n;
+}
+/* Distance of p to the cone (x), and where the tangent of the distance along the ray falls to 0
+   (y): a cone is convex, so its distance along a ray is too, and the ray cannot meet it sooner. */
+LAO_FN lao_v2 sdv_cone_along(lao_v3 p, lao_v3 direction, lao_v4 a, lao_v4 b) {
+    sdv_cone_point c = sdv_cone_point_make(p, a, b);
+    LAO_EXACT float step = c.distance / lao_max(-sdv_cone_slope(c, direction), 1.0e-6f);
+    return lao_v2_make(c.distance, step);
+}
+LAO_FN sdv_near sdv_near_add(sdv_near n, lao_v3 p, lao_v3 direction, lao_v4 a, lao_v4 b,
+                             float cone) {
+    sdv_near r = n;
+    lao_v2 along = sdv_cone_along(p, direction, a, b);
+    if (along.x < n.distance) {
+        r.distance = along.x;
+        r.cone = cone;
+    }
+    r.advance = lao_min(n.advance, along.y);
+    return r;
+}
+/* Least distance of the whole line to the cone (x, mm; negative: it passes through it) and where
+   (y): seen along the line, the cone is a flat round cone and the line a point. */
+LAO_FN lao_v2 sdv_line_nearest(lao_v3 origin, lao_v3 direction, lao_v4 a, lao_v4 b) {
+    lao_v3 qa = lao_v3_sub(lao_v3_make(a.x, a.y, a.z), origin);
+    lao_v3 qb = lao_v3_sub(lao_v3_make(b.x, b.y, b.z), origin);
+    LAO_EXACT float ta = lao_v3_dot(qa, direction);
+    LAO_EXACT float tb = lao_v3_dot(qb, direction);
+    lao_v3 fa = lao_v3_along(qa, direction, -ta);
+    lao_v3 fb = lao_v3_along(qb, direction, -tb);
+    lao_v4 pa = lao_v4_make(fa.x, fa.y, fa.z, a.w);
+    lao_v4 pb = lao_v4_make(fb.x, fb.y, fb.z, b.w);
+    lao_v3 zero = lao_v3_make(0.0f, 0.0f, 0.0f);
+    sdv_cone_point c = sdv_cone_point_make(zero, pa, pb);
+    if (c.part != 0.0f) {
+        return lao_v2_make(c.distance, c.part < 0.0f ? ta : tb);
+    }
+    LAO_EXACT float centre = (c.x - c.y * c.d / lao_max(c.l, 1.0e-30f)) / c.s;
+    LAO_EXACT float t = ta + (tb - ta) * lao_clamp01(centre);
+    return lao_v2_make(c.distance, t);
+}
+
+/* A ray under way. */
+struct sdv_march {
+    float t, end;         /* mm */
+    float before, older;  /* t of the last two samples */
+    float distance, cone; /* of the last sample */
+    float falling;        /* 1: the distance fell up to the last sample */
+    float d_min, t_min;   /* the least local minimum that was passed */
+    float low, low_cone; /* over all samples: the ray's least distance to the nearest cone, and that
+                            cone */
+    float inside;        /* 1: it started inside a vessel */
+    float steps;         /* samples so far */
+    float state;         /* SDV_MARCH_... */
+};
+#ifndef LAO_GLSL
+typedef struct sdv_march sdv_march;
+#endif
+#define SDV_MARCH_GOES 0.0f
+#define SDV_MARCH_HITS 1.0f
+#define SDV_MARCH_LEAVES 2.0f
+LAO_FN sdv_march sdv_march_start(lao_v2 span) {
+    sdv_march m;
+    m.t = span.x;
+    m.end = span.y;
+    m.before = 0.0f;
+    m.older = 0.0f;
+    m.distance = SDV_FAR;
+    m.cone = -1.0f;
+    m.falling = 1.0f;
+    m.d_min = SDV_FAR;
+    m.t_min = 0.0f;
+    m.low = SDV_FAR;
+    m.low_cone = -1.0f;
+    m.inside = 0.0f;
+    m.steps = 0.0f;
+    m.state = span.x <= span.y ? SDV_MARCH_GOES : SDV_MARCH_LEAVES;
+    return m;
+}
+/* Distance below which a point is on the surface. */
+LAO_FN float sdv_hit_distance(float cell) {
+    return 1.0e-3f * cell;
+}
+/* A local minimum between two points of the ray, by going to where the ray is nearest to the cone
+   that was nearest so far, a few times. */
+struct sdv_minimum {
+    float d, t;       /* the least distance so far and where */
+    float cone, last; /* to be looked at, -1: none; the one before */
+};
+#ifndef LAO_GLSL
+typedef struct sdv_minimum sdv_minimum;
+#endif
+#define SDV_MINIMUM_ROUNDS 6
+LAO_FN sdv_minimum sdv_minimum_start(float cone) {
+    sdv_minimum r;
+    r.d = SDV_FAR;
+    r.t = 0.0f;
+    r.cone = cone;
+    r.last = -1.0f;
+    return r;
+}
+/* a, b: the ends of r.cone; the minimum is in [low, high]. */
+LAO_FN sdv_minimum sdv_minimum_add(sdv_minimum r, lao_v3 origin, lao_v3 direction, lao_v4 a,
+                                   lao_v4 b, float low, float high) {
+    sdv_minimum n = r;
+    lao_v2 nearest = sdv_line_nearest(origin, direction, a, b);
+    LAO_EXACT float t = lao_min(lao_max(nearest.y, low), high);
+    LAO_EXACT float d = sdv_round_cone(lao_v3_along(origin, direction, t), a, b);
+    n.last = r.cone;
+    if (d < r.d) {
+        n.d = d;
+        n.t = t;
+    }
+    return n;
+}
+/* The sample at r.t decides whether there is a better cone. */
+LAO_FN sdv_minimum sdv_minimum_next(sdv_minimum r, sdv_near n) {
+    sdv_minimum next = r;
+    next.cone = n.distance < r.d && n.cone != r.last ? n.cone : -1.0f;
+    return next;
+}
+LAO_FN sdv_march sdv_march_minimum(sdv_march m, sdv_minimum found) {
+    sdv_march r = m;
+    if (found.d < m.d_min) {
+        r.d_min = found.d;
+        r.t_min = found.t;
+    }
+    return r;
+}
+/* Keeps the cone that the whole ray, t >= 0, comes nearest to; `found`: one round from a sample's.
+ */
+LAO_FN sdv_march sdv_march_note(sdv_march m, sdv_minimum found) {
+    sdv_march r = m;
+    if (found.d < m.low) {
+        r.low = found.d;
+        r.low_cone = found.last;
+    }
+    return r;
+}
+/* The least distance of a ray that hits nothing is looked for between x and y: elsewhere it is more
+   than `low` away from the ball around the box. Where it is nearest to the ball's middle: z. */
+LAO_FN lao_v3 sdv_least_span(lao_v3 origin, lao_v3 direction, sdv_box box, float low) {
+    lao_v3 middle = lao_v3_along(box.origin, box.size, 0.5f * box.cell);
+    LAO_EXACT float reach = 0.5f * box.cell * lao_sqrt(lao_v3_dot(box.size, box.size)) + low;
+    LAO_EXACT float t = lao_v3_dot(lao_v3_sub(middle, origin), direction);
+    return lao_v3_make(lao_max(0.0f, t - reach), t + reach, lao_max(0.0f, t));
+}
+/* From one sample to the next: nothing in between is much nearer than `low`. */
+#define SDV_LEAST_SAMPLES 128
+LAO_FN float sdv_least_step(sdv_near n, bool occupied, float far_step, float low, float cell) {
+    LAO_EXACT float clear = occupied ? lao_min(n.distance, sdv_near_reach(cell)) : far_step;
+    LAO_EXACT float step = clear - 0.9f * low;
+    return lao_max(lao_max(step, 0.2f * low), 0.25f * cell);
+}
+/* The sample before this one was a local minimum of the distance. */
+LAO_FN bool sdv_march_passed(sdv_march m, sdv_near n) {
+    return m.falling > 0.5f && m.inside < 0.5f && n.distance > m.distance;
+}
+/* Goes on from a sample at m.t: `n` comes from the list of the cell there when it is `occupied`,
+   else of the nearest cell that has one (for its distance; or SDV_FAR when nobody wants d_min), and
+   `far_step` is the cell's. */
+LAO_FN sdv_march sdv_march_step(sdv_march m, sdv_near n, bool occupied, float far_step,
+                                float cell) {
+    sdv_march r = m;
+    r.falling = n.distance > m.distance ? 0.0f : 1.0f;
+    r.distance = n.distance;
+    r.cone = n.cone;
+    r.steps = m.steps + 1.0f;
+    LAO_EXACT float step = occupied ? n.advance : far_step;
+    if (occupied) {
+        if (m.steps < 0.5f && n.distance < 0.0f) {
+            r.inside = 1.0f;
+        }
+        LAO_EXACT float left = r.inside > 0.5f ? -n.distance : n.distance;
+        if (left < sdv_hit_distance(cell)) {
+            r.state = SDV_MARCH_HITS;
+            return r;
+        }
+        step = r.inside > 0.5f ? left : step; /* the ball inside the nearest cone */
+    }
+    r.older = m.before;
+    r.before = m.t;
+    r.t = m.t + step;
+    if (!(r.t <= m.end)) {
+        r.state = SDV_MARCH_LEAVES;
+    }
+    return r;
+}
+/* May something as near as `reach` be seen from an empty cell? 0: everything matters. */
+LAO_FN bool sdv_is_within(float far_step, float reach) {
+    return !(reach > 0.0f) || far_step < reach;
+}
+/* Where rays look for near misses: the box, which has 2 cells around the tree, with a rim where
+   that is less than `reach`. What lies in the box is no farther from a place outside than from that
+   place's nearest one inside, so cells serve out there as well. */
+LAO_FN sdv_box sdv_box_grown(sdv_box box, float reach) {
+    sdv_box r = box;
+    LAO_EXACT float by = lao_max(reach - 2.0f * box.cell, 0.0f);
+    LAO_EXACT float cells = 2.0f * by / box.cell;
+    r.origin = lao_v3_make(box.origin.x - by, box.origin.y - by, box.origin.z - by);
+    r.size = lao_v3_make(box.size.x + cells, box.size.y + cells, box.size.z + cells);
+    return r;
+}
+#define SDV_POLISH_ROUNDS 2
+/* Newton's step from a point close to the surface onto it: where the field's tangent is 0. */
+LAO_FN float sdv_polish(float t, float distance, lao_v3 gradient, lao_v3 direction, float cell) {
+    LAO_EXACT float slope = lao_v3_dot(gradient, direction);
+    LAO_EXACT float steep = lao_max(lao_abs(slope), 0.02f);
+    LAO_EXACT float step = distance / (slope < 0.0f ? steep : -steep);
+    LAO_EXACT float most = 0.1f * cell;
+    LAO_EXACT float r = t + lao_min(lao_max(step, -most), most);
+    return r;
+}
+/* ---- shapes and Boolean operations */
+/* kind: SDV_SHAPE_...; ball: a = centre, radius; box: a = centre, b = half its size; plane: a =
+   unit normal, offset, inside where normal . p < offset. */
+struct sdv_shape {
+    lao_v4 a, b;
+    lao_int kind, operation;
+};
+#ifndef LAO_GLSL
+typedef struct sdv_shape sdv_shape;
+#endif
+#ifdef LAO_GLSL
+#define SDV_UNION 0
+#define SDV_INTERSECTION 1
+#define SDV_SUBTRACTION 2
+#define SDV_SHAPE_BALL 0
+#define SDV_SHAPE_BOX 1
+#define SDV_SHAPE_PLANE 2
+#endif
+LAO_FN lao_v3 sdv_box_apart(lao_v3 p, lao_v4 centre, lao_v4 half_size) {
+    LAO_EXACT float x = lao_abs(p.x - centre.x) - half_size.x;
+    LAO_EXACT float y = lao_abs(p.y - centre.y) - half_size.y;
+    LAO_EXACT float z = lao_abs(p.z - centre.z) - half_size.z;
+    return lao_v3_make(x, y, z);
+}
+LAO_FN float sdv_shape_distance(lao_v3 p, sdv_shape shape) {
+    if (shape.kind == SDV_SHAPE_PLANE) {
+        LAO_EXACT float d = lao_v3_dot(p, lao_v3_make(shape.a.x, shape.a.y, shape.a.z)) - shape.a.w;
+        return d;
+    }
+    if (shape.kind == SDV_SHAPE_BOX) {
+        lao_v3 q = sdv_box_apart(p, shape.a, shape.b);
+        lao_v3 o = lao_v3_make(lao_max(q.x, 0.0f), lao_max(q.y, 0.0f), lao_max(q.z, 0.0f));
+        LAO_EXACT float d =
+            lao_sqrt(lao_v3_dot(o, o)) + lao_min(lao_max(q.x, lao_max(q.y, q.z)), 0.0f);
+        return d;
+    }
+    lao_v3 q = lao_v3_sub(p, lao_v3_make(shape.a.x, shape.a.y, shape.a.z));
+    LAO_EXACT float d = lao_sqrt(lao_v3_dot(q, q)) - shape.a.w;
+    return d;
+}
+LAO_FN lao_v3 sdv_shape_gradient(lao_v3 p, sdv_shape shape) {
+    lao_v3 a = lao_v3_make(shape.a.x, shape.a.y, shape.a.z);
+    lao_v3 up = lao_v3_make(0.0f, 0.0f, 1.0f);
+    if (shape.kind == SDV_SHAPE_PLANE) {
+        return a;
+    }
+    lao_v3 q = lao_v3_sub(p, a);
+    if (shape.kind != SDV_SHAPE_BOX) {
+        return lao_v3_unit(q, up);
+    }
+    lao_v3 d = sdv_box_apart(p, shape.a, shape.b);
+    lao_v3 o = lao_v3_make(lao_max(d.x, 0.0f), lao_max(d.y, 0.0f), lao_max(d.z, 0.0f));
+    if (!(lao_v3_dot(o, o) > 0.0f)) { /* inside: the nearest face */
+        LAO_EXACT float most = lao_max(d.x, lao_max(d.y, d.z));
+        o = lao_v3_make(0.0f, 0.0f, 1.0f);
+        if (d.x >= most) {
+            o = lao_v3_make(1.0f, 0.0f, 0.0f);
+        } else if (d.y >= most) {
+            o = lao_v3_make(0.0f, 1.0f, 0.0f);
+        }
+    }
+    return lao_v3_unit(
+        lao_v3_make(q.x < 0.0f ? -o.x : o.x, q.y < 0.0f ? -o.y : o.y, q.z < 0.0f ? -o.z : o.z), up);
+}
+/* A distance, and whose it is: part -1: the tree's; i: that of shape i. side -1: turned inside out.
+ */
+struct sdv_solid {
+    float distance, side;
+    lao_int part;
+};
+#ifndef LAO_GLSL
+typedef struct sdv_solid sdv_solid;
+#endif
+LAO_FN sdv_solid sdv_solid_start(float distance) {
+    sdv_solid s;
+    s.distance = distance;
+    s.side = 1.0f;
+    s.part = -1;
+    return s;
+}
+/* min(a, b), max(a, b), max(a, -b): lower bounds of the true distance, never of wrong sign. */
+LAO_FN sdv_solid sdv_solid_add(sdv_solid s, float distance, lao_int operation, lao_int part) {
+    sdv_solid r = s;
+    LAO_EXACT float d = operation == SDV_SUBTRACTION ? -distance : distance;
+    if (operation == SDV_UNION ? d < s.distance : d > s.distance) {
+        r.distance = d;
+        r.side = operation == SDV_SUBTRACTION ? -1.0f : 1.0f;
+        r.part = part;
+    }
+    return r;
+}
+
+/* ---- outlines and shadows from d_min (L19 5 with METHODS 5.4); lengths in mm */
+/* Outside the tree, nearer to it than `width`. */
+LAO_FN bool sdv_is_silhouette(bool hit, float d_min, float width) {
+    return !hit && d_min < width;
+}
+/* The same, and in front of parts farther away. */
+LAO_FN bool sdv_is_contour(float d_min, float width) {
+    return d_min < width;
+}
+/* The rim of something `depth` mm in front, wider the deeper the gap: d_min < min(ratio depth,
+   most). t, t_min: the ray's parameters of the surface and of the near miss. */
+LAO_FN bool sdv_is_depth_shadow(float d_min, float t_min, float t, float ratio, float most) {
+    LAO_EXACT float depth = lao_abs(t - t_min);
+    LAO_EXACT float width = lao_min(ratio * depth, most);
+    return d_min < width;
+}
+/* Soft shadow: `light` so far, 1 at the start, after a sample of the field at t on the way. */
+LAO_FN float sdv_shadow_add(float light, float distance, float t, float hardness) {
+    LAO_EXACT float passed = hardness * distance / lao_max(t, 1.0e-6f);
+    return lao_min(light, lao_max(passed, 0.0f));
+}
+/* Ambient occlusion: sample i of SDV_OPEN_SAMPLES is that far along the normal, and what it adds.
+ */
+#define SDV_OPEN_SAMPLES 5
+LAO_FN float sdv_open_place(float reach, lao_int i) {
+    LAO_EXACT float r = reach * (LAO_F(i) + 1.0f) / LAO_F(SDV_OPEN_SAMPLES);
+    return r;
+}
+LAO_FN float sdv_open_weight(lao_int i) {
+    return lao_bits_float(LAO_U(127 - i) << 23u); /* 2^-i */
+}
+/* What the sample's ball lacks of free room, as part of it. */
+LAO_FN float sdv_open_add(float closed, float distance, float place, lao_int i) {
+    LAO_EXACT float lack = lao_clamp01((place - distance) / place);
+    LAO_EXACT float r = closed + sdv_open_weight(i) * lack;
+    return r;
+}
+LAO_FN float sdv_open_result(float closed) {
+    LAO_EXACT float r = 1.0f - closed / (2.0f - sdv_open_weight(SDV_OPEN_SAMPLES - 1));
+    return lao_clamp01(r);
+}
+
+/* ---- least distances to round cones, exact (a cone is convex, and so is its distance on a segment
+   or triangle) */
+/* Of the points p .. q. */
+LAO_FN float sdv_segment_cone(lao_v3 p, lao_v3 q, lao_v4 a, lao_v4 b) {
+    lao_v3 pq = lao_v3_sub(q, p);
+    LAO_EXACT float length = lao_sqrt(lao_v3_dot(pq, pq));
+    if (!(length > 1.0e-12f)) {
+        return sdv_round_cone(p, a, b);
+    }
+    lao_v3 direction = lao_v3_scale(pq, 1.0f / length);
+    lao_v2 nearest = sdv_line_nearest(p, direction, a, b);
+    LAO_EXACT float t = lao_min(lao_max(0.0f, nearest.y), length);
+    return sdv_round_cone(lao_v3_along(p, direction, t), a, b);
+}
+/* Where the point p of the plane of a triangle is: not outside of any edge. n: its normal, any
+ * length. */
+LAO_FN bool sdv_in_triangle(lao_v3 p, lao_v3 u, lao_v3 v, lao_v3 w, lao_v3 n) {
+    LAO_EXACT float a = lao_v3_dot(lao_v3_cross(lao_v3_sub(v, u), lao_v3_sub(p, u)), n);
+    LAO_EXACT float b = lao_v3_dot(lao_v3_cross(lao_v3_sub(w, v), lao_v3_sub(p, v)), n);
+    LAO_EXACT float c = lao_v3_dot(lao_v3_cross(lao_v3_sub(u, w), lao_v3_sub(p, w)), n);
+    return a >= 0.0f && b >= 0.0f && c >= 0.0f;
+}
+/* The ball at `s` of the way from a to b: of the points of the plane, its centre's foot is nearest.
+ */
+LAO_FN float sdv_triangle_ball(float least, lao_v3 u, lao_v3 v, lao_v3 w, lao_v3 n, lao_v4 a,
+                               lao_v4 b, float s) {
+    lao_v3 ab = lao_v3_make(b.x - a.x, b.y - a.y, b.z - a.z);
+    lao_v3 c = lao_v3_along(lao_v3_make(a.x, a.y, a.z), ab, s);
+    LAO_EXACT float height = lao_v3_dot(lao_v3_sub(c, u), n);
+    lao_v3 foot = lao_v3_along(c, n, -height);
+    if (!sdv_in_triangle(foot, u, v, w, n)) {
+        return least;
+    }
+    return lao_min(least, sdv_round_cone(foot, a, b));
+}
+/* Of the points of a triangle: on an edge, or below an end of the axis, or where the axis meets the
+ * plane. */
+LAO_FN float sdv_triangle_cone(lao_v3 u, lao_v3 v, lao_v3 w, lao_v4 a, lao_v4 b) {
+    LAO_EXACT float least =
+        lao_min(sdv_segment_cone(u, v, a, b),
+                lao_min(sdv_segment_cone(v, w, a, b), sdv_segment_cone(w, u, a, b)));
+    lao_v3 zero = lao_v3_make(0.0f, 0.0f, 0.0f);
+    lao_v3 n = lao_v3_unit(lao_v3_cross(lao_v3_sub(v, u), lao_v3_sub(w, u)), zero);
+    if (!(lao_v3_dot(n, n) > 0.5f)) {
+        return least;
+    }
+    LAO_EXACT float ha = lao_v3_dot(lao_v3_sub(lao_v3_make(a.x, a.y, a.z), u), n);
+    LAO_EXACT float hb = lao_v3_dot(lao_v3_sub(lao_v3_make(b.x, b.y, b.z), u), n);
+    least = sdv_triangle_ball(least, u, v, w, n, a, b, 0.0f);
+    least = sdv_triangle_ball(least, u, v, w, n, a, b, 1.0f);
+    if ((ha < 0.0f) != (hb < 0.0f)) {
+        least = sdv_triangle_ball(least, u, v, w, n, a, b, ha / (ha - hb));
+    }
+    return least;
+}
+
+/* ---- pull-push (L19 Eqs. 4 - 9 with METHODS 6): four channels at a time */
+struct sdv_mix {
+    lao_v4 value;
+    float weight, share; /* sums of h min(w, 1) and of h */
+};
+#ifndef LAO_GLSL
+typedef struct sdv_mix sdv_mix;
+#endif
+LAO_FN sdv_mix sdv_mix_start(lao_v4 zero) {
+    sdv_mix m;
+    m.value = zero;
+    m.weight = 0.0f;
+    m.share = 0.0f;
+    return m;
+}
+/* One child or parent that exists. */
+LAO_FN sdv_mix sdv_mix_add(sdv_mix m, lao_v4 value, float weight, float h) {
+    sdv_mix r = m;
+    LAO_EXACT float w = h * lao_min(weight, 1.0f);
+    if (!(w > 0.0f)) {
+        r.share = m.share + h;
+        return r;
+    }
+    LAO_EXACT float x = m.value.x + w * value.x;
+    LAO_EXACT float y = m.value.y + w * value.y;
+    LAO_EXACT float z = m.value.z + w * value.z;
+    LAO_EXACT float v = m.value.w + w * value.w;
+    r.value = lao_v4_make(x, y, z, v);
+    r.weight = m.weight + w;
+    r.share = m.share + h;
+    return r;
+}
+/* 0 where nothing had a weight. */
+LAO_FN lao_v4 sdv_mix_value(sdv_mix m) {
+    if (!(m.weight > 0.0f)) {
+        return lao_v4_make(0.0f, 0.0f, 0.0f, 0.0f);
+    }
+    LAO_EXACT float x = m.value.x / m.weight;
+    LAO_EXACT float y = m.value.y / m.weight;
+    LAO_EXACT float z = m.value.z / m.weight;
+    LAO_EXACT float v = m.value.w / m.weight;
+    return lao_v4_make(x, y, z, v);
+}
+/* Weight of a child in the pull. */
+LAO_FN float sdv_pull_share(lao_int pull) {
+    return pull == 1 ? 1.0f : 0.25f;
+}
+/* The two nearest parents of texel x along an axis, k = 0, 1, and their shares. */
+LAO_FN lao_int sdv_push_parent(lao_int x, lao_int k) {
+    lao_int beside = (x & 1) != 0 ? 1 : -1;
+    return (x >> 1) + (k != 0 ? beside : 0);
+}
+LAO_FN float sdv_push_share(lao_int push, lao_int k) {
+    if (push == 1) {
+        return k != 0 ? 0.25f : 0.75f;
+    }
+    return 0.5f;
+}
+/* How much of its own a texel keeps: 1 - (1 - w)^k. */
+LAO_FN float sdv_push_own(float weight, lao_int exponent) {
+    LAO_EXACT float a = 1.0f - lao_power(1.0f - lao_clamp01(weight), exponent);
+    return a;
+}
+/* A texel of value and own share after the push from its parents' mix. */
+LAO_FN lao_v4 sdv_push_value(sdv_mix parents, lao_v4 value, float own) {
+    if (!(own > 0.0f)) {
+        return sdv_mix_value(parents);
+    }
+    if (!(parents.weight > 0.0f) || own >= 1.0f) {
+        return value;
+    }
+    lao_v4 g = sdv_mix_value(parents);
+    LAO_EXACT float through = 1.0f - own;
+    LAO_EXACT float x = through * g.x + own * value.x;
+    LAO_EXACT float y = through * g.y + own * value.y;
+    LAO_EXACT float z = through * g.z + own * value.z;
+    LAO_EXACT float v = through * g.w + own * value.w;
+    return lao_v4_make(x, y, z, v);
+}
+LAO_FN float sdv_push_weight(sdv_mix parents, float own) {
+    if (!(parents.weight > 0.0f)) {
+        return own;
+    }
+    LAO_EXACT float w = (1.0f - own) * (parents.weight / parents.share) + own;
+    return w;
+}
+
+/* ---- shading */
+#define SDV_NEAR_MISS_CLOSE 0
+#define SDV_NEAR_MISS_EXACT 1
+#define SDV_NEAR_MISS_NONE 2
+/* How near to a vessel a ray must pass for anything to be drawn of it, mm. `shadow`: % of the
+   diameter. */
+LAO_FN float sdv_near_miss_reach(float silhouette, float contour, float shadow, float diameter) {
+    LAO_EXACT float widest = 0.01f * shadow * diameter;
+    return lao_max(lao_max(silhouette, contour), widest);
+}
+/* Between the colours of a cone's ends, by the place along its axis. */
+LAO_FN lao_v3 sdv_cone_color(lao_v3 p, lao_v4 a, lao_v4 b, lao_v3 color_a, lao_v3 color_b) {
+    lao_v3 axis = lao_v3_make(b.x - a.x, b.y - a.y, b.z - a.z);
+    lao_v3 q = lao_v3_make(p.x - a.x, p.y - a.y, p.z - a.z);
+    LAO_EXACT float along = lao_v3_dot(q, axis) / lao_max(lao_v3_dot(axis, axis), 1.0e-30f);
+    LAO_EXACT float t = lao_clamp01(along);
+    LAO_EXACT float x = color_a.x + t * (color_b.x - color_a.x);
+    LAO_EXACT float y = color_a.y + t * (color_b.y - color_a.y);
+    LAO_EXACT float z = color_a.z + t * (color_b.z - color_a.z);
+    return lao_v3_make(x, y, z);
+}
+/* Light after something dark, 0 .. 1, of that strength. */
+LAO_FN float sdv_dimmed(float light, float dark, float strength) {
+    LAO_EXACT float r = light * lao_clamp01(1.0f - strength * dark);
+    return r;
+}
+/* Phong with a head light; n and l (towards the light) are unit. `light`: what reaches the place of
+   all of it. */
+LAO_FN lao_v3 sdv_shade(lao_v3 color, lao_v3 n, lao_v3 l, float ambient, float diffuse,
+                        float specular, lao_int exponent, float light) {
+    LAO_EXACT float nl = lao_max(lao_v3_dot(n, l), 0.0f);
+    LAO_EXACT float rl = lao_max(2.0f * nl * nl - 1.0f, 0.0f);
+    LAO_EXACT float body = (ambient + diffuse * nl) * light;
+    LAO_EXACT float shine = specular * lao_power(rl, exponent) * light;
+    LAO_EXACT float x = color.x * body + shine;
+    LAO_EXACT float y = color.y * body + shine;
+    LAO_EXACT float z = color.z * body + shine;
+    return lao_v3_make(lao_clamp01(x), lao_clamp01(y), lao_clamp01(z));
+}
+/* SDV_SHARED_END */
+
+#endif /* SDFVESSEL_H */
+
+#ifdef SDFVESSEL_IMPLEMENTATION
+#ifndef SDFVESSEL_IMPLEMENTATION_DONE
+#define SDFVESSEL_IMPLEMENTATION_DONE
+
+#include <stdarg.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/* ================================================================================================
+ * host */
+
+typedef struct sdv__item_row {
+    lao_result result;
+    const char *text;
+} sdv__item_row;
+
+static const sdv__item_row sdv__items[] = {
+#define SDV__ROW(id, result, text) {result, text},
+    SDV_LOG_ITEMS(SDV__ROW)
+#undef SDV__ROW
+};
+
+/* Logs a failure with a place (printf) or NULL; returns its result. */
+static lao_result sdv__fail(const sdv_host *host, sdv_log_item item, const char *place, ...) {
+    char text[256];
+    size_t n;
+    if (!host || !host->log) {
+        return sdv__items[item].result;
+    }
+    n = (size_t)snprintf(text, sizeof text, "%s", sdv__items[item].text);
+    if (place && n + 2 < sizeof text) {
+        va_list list;
+        memcpy(text + n, ": ", 3);
+        va_start(list, place);
+        vsnprintf(text + n + 2, sizeof text - n - 2, place, list);
+        va_end(list);
+    }
+    host->log(host->user, item, sdv__items[item].result, text);
+    return sdv__items[item].result;
+}
+
+static void *sdv__malloc(void *user, size_t size) {
+    (void)user;
+    return malloc(size);
+}
+static void sdv__free(void *user, void *memory, size_t size) {
+    (void)user;
+    (void)size;
+    free(memory);
+}
+static lao_allocator sdv__allocator(const sdv_host *host) {
+    lao_allocator a;
+    if (host && host->allocator.allocate && host->allocator.release) {
+        return host->allocator;
+    }
+    a.allocate = sdv__malloc;
+    a.release = sdv__free;
+    a.user = NULL;
+    return a;
+}
+
+/* Memory that knows its size, in front of it. NULL: none left, or more than size_t can count. */
+enum { SDV__HEAD = 16 };
+static void *sdv__take(const lao_allocator *allocator, uint64_t count, size_t size) {
+    unsigned char *memory;
+    size_t bytes;
+    if (count > (SIZE_MAX - SDV__HEAD) / size) {
+        return NULL;
+    }
+    bytes = SDV__HEAD + (size_t)count * size;
+    memory = (unsigned char *)allocator->allocate(allocator->user, bytes);
+    if (!memory) {
+        return NULL;
+    }
+    memcpy(memory, &bytes, sizeof bytes);
+    return memory + SDV__HEAD;
+}
+static void sdv__give(const lao_allocator *allocator, void *taken) {
+    if (taken) {
+        unsigned char *memory = (unsigned char *)taken - SDV__HEAD;
+        size_t bytes;
+        memcpy(&bytes, memory, sizeof bytes);
+        allocator->release(allocator->user, memory, bytes);
+    }
+}
+
+/* Cuts one block into arrays: a first round with base NULL counts, a second one with the memory
+   cuts. */
+typedef struct sdv__block {
+    unsigned char *base;
+    uint64_t used;
+} sdv__block;
+static void *sdv__part(sdv__block *block, uint64_t count, size_t size) {
+    unsigned char *part = block->base ? block->base + block->used : NULL;
+    block->used += (count * size + 15u) & ~(uint64_t)15u;
+    return part;
+}
+static uint32_t *sdv__part_u32(sdv__block *block, uint64_t count) {
+    return (uint32_t *)sdv__part(block, count, sizeof(uint32_t));
+}
+
+/* ================================================================================================
+ * tree */
+
+/* What building needs until the tree exists. All arrays come from one block. */
+typedef struct sdv__build {
+    const sdv_host *host;
+    const sdv_tree_desc *desc;
+    lao_allocator allocator;
+    uint32_t *target;      /* per desc node: first node at its position, later its final index */
+    uint32_t *source;      /* per node: desc node */
+    uint32_t *group;       /* union-find; later the component */
+    uint32_t *degree;      /* per node */
+    sdv_segment *segments; /* room for joins: + node_count */
+    uint32_t *segment_source;
+    uint32_t *table; /* hash table */
+    uint32_t table_mask;
+    uint32_t *first, *incident; /* segments of each node; twice the segments */
+    uint32_t *later;            /* segments to be followed backwards */
+    unsigned char *turned;      /* per segment */
+    uint32_t *entered;          /* per node: segments that enter it */
+    uint32_t *next;             /* per node: next in its cell of the join grid */
+    float *radius;              /* per node */
+    uint32_t node_count, segment_count, root_count, joined;
+    sdv_warning warnings[SDV_LOG_ITEM_COUNT];
+    uint32_t warning_count;
+} sdv__build;
+
+static void sdv__warn(sdv__build *b, sdv_log_item item, uint32_t place) {
+    uint32_t i = 0;
+    while (i < b->warning_count && b->warnings[i].item != item) {
+        i++;
+    }
+    if (i == b->warning_count) {
+        b->warnings[i].item = item;
+        b->warnings[i].count = 0;
+        b->warnings[i].first = place;
+        b->warning_count++;
+    }
+    b->warnings[i].count++;
+}
+
+static lao_result sdv__tree_check(const sdv_host *host, const sdv_tree_desc *desc) {
+    const uint32_t most = 1u << 30;
+    uint32_t i;
+    if (desc->node_count == 0) {
+        return sdv__fail(host, SDV_LOG_TREE_EMPTY, NULL);
+    }
+    if (desc->node_count > most || desc->segment_count > most) {
+        return sdv__fail(host, SDV_LOG_TREE_COUNT, NULL);
+    }
+    if (!desc->positions || (desc->segment_count && !desc->segments) ||
+        (desc->node_attribute_count && !desc->node_attributes) ||
+        (desc->segment_attribute_count && !desc->segment_attributes)) {
+        return sdv__fail(host, SDV_LOG_NULL_ARGUMENT, "arrays of sdv_tree_desc");
+    }
+    for (i = 0; i < desc->node_count; i++) {
+        const float *p = desc->positions + 3 * (size_t)i;
+        if (!(fabsf(p[0]) <= 1e9f && fabsf(p[1]) <= 1e9f && fabsf(p[2]) <= 1e9f)) {
+            return sdv__fail(host, SDV_LOG_TREE_POSITION, "node %u", i);
+        }
+    }
+    for (i = 0; i < desc->segment_count; i++) {
+        const sdv_segment *s = desc->segments + i;
+        if (s->parent >= desc->node_count || s->child >= desc->node_count) {
+            return sdv__fail(host, SDV_LOG_TREE_SEGMENT, "segment %u from node %u to node %u", i,
+                             s->parent, s->child);
+        }
+    }
+    for (i = 0; i < desc->node_attribute_count + desc->segment_attribute_count; i++) {
+        uint32_t n = desc->node_attribute_count;
+        const sdv_attribute *a =
+            i < n ? desc->node_attributes + i : desc->segment_attributes + (i - n);
+        if (!a->name || (!a->values && (i < n || desc->segment_count)) || a->components > 1024) {
+            return sdv__fail(host, SDV_LOG_TREE_ATTRIBUTE, "attribute %u of the %s",
+                             i < n ? i : i - n, i < n ? "nodes" : "segments");
+        }
+    }
+    return LAO_OK;
+}
+
+static void sdv__build_parts(sdv__build *b, sdv__block *block) {
+    uint64_t n = b->desc->node_count, m = b->desc->segment_count, all = n + m, size = 16;
+    while (size < 2 * (n > m ? n : m)) {
+        size *= 2;
+    }
+    b->table_mask = (uint32_t)(size - 1);
+    b->target = sdv__part_u32(block, n);
+    b->source = sdv__part_u32(block, n);
+    b->group = sdv__part_u32(block, n);
+    b->degree = sdv__part_u32(block, n);
+    b->segments = (sdv_segment *)sdv__part(block, all, sizeof(sdv_segment));
+    b->segment_source = sdv__part_u32(block, all);
+    b->table = sdv__part_u32(block, size);
+    b->first = sdv__part_u32(block, n + 1);
+    b->incident = sdv__part_u32(block, 2 * all);
+    b->later = sdv__part_u32(block, 2 * all);
+    b->turned = (unsigned char *)sdv__part(block, all, 1);
+    b->entered = sdv__part_u32(block, n);
+    b->next = sdv__part_u32(block, n);
+    b->radius = (float *)sdv__part(block, n, sizeof(float));
+}
+
+static uint32_t sdv__mix(uint32_t a, uint32_t b, uint32_t c) {
+    return lao_hash(a + lao_hash(b + lao_hash(c)));
+}
+
+/* The position's bits, -0 as 0. */
+static void sdv__position_bits(const float *p, uint32_t bits[3]) {
+    int k;
+    for (k = 0; k < 3; k++) {
+        bits[k] = lao_float_bits(p[k] + 0.0f);
+    }
+}
+
+/* target = the first node at the same position */
+static void sdv__merge(sdv__build *b) {
+    const float *p = b->desc->positions;
+    uint32_t i, n = b->desc->node_count;
+    for (i = 0; i < n; i++) {
+        b->target[i] = i;
+    }
+    if (!(b->desc->flags & SDV_TREE_MERGE)) {
+        return;
+    }
+    memset(b->table, 0xff, ((size_t)b->table_mask + 1) * sizeof *b->table);
+    for (i = 0; i < n; i++) {
+        uint32_t bits[3], slot;
+        sdv__position_bits(p + 3 * (size_t)i, bits);
+        slot = sdv__mix(bits[0], bits[1], bits[2]) & b->table_mask;
+        for (; b->table[slot] != SDV_NONE; slot = (slot + 1) & b->table_mask) {
+            uint32_t other[3];
+            sdv__position_bits(p + 3 * (size_t)b->table[slot], other);
+            if (memcmp(bits, other, sizeof bits) == 0) {
+                break;
+            }
+        }
+        if (b->table[slot] == SDV_NONE) {
+            b->table[slot] = i;
+        } else {
+            b->target[i] = b->table[slot];
+            sdv__warn(b, SDV_LOG_NODES_MERGED, i);
+        }
+    }
+}
+
+/* Segments between merged nodes, each pair once. */
+static void sdv__pick_segments(sdv__build *b) {
+    uint32_t i;
+    memset(b->table, 0xff, ((size_t)b->table_mask + 1) * sizeof *b->table);
+    for (i = 0; i < b->desc->segment_count; i++) {
+        uint32_t from = b->target[b->desc->segments[i].parent];
+        uint32_t to = b->target[b->desc->segments[i].child];
+        uint32_t low = from < to ? from : to, high = from < to ? to : from, slot;
+        if (from == to) {
+            sdv__warn(b, SDV_LOG_SEGMENTS_LOOSE, i);
+            continue;
+        }
+        slot = sdv__mix(low, high, 7) & b->table_mask;
+        for (; b->table[slot] != SDV_NONE; slot = (slot + 1) & b->table_mask) {
+            const sdv_segment *s = b->segments + b->table[slot];
+            if ((s->parent == low && s->child == high) || (s->parent == high && s->child == low)) {
+                break;
+            }
+        }
+        if (b->table[slot] != SDV_NONE) {
+            sdv__warn(b, SDV_LOG_SEGMENTS_REPEATED, i);
+            continue;
+        }
+        b->table[slot] = b->segment_count;
+        b->segments[b->segment_count].parent = from;
+        b->segments[b->segment_count].child = to;
+        b->segment_source[b->segment_count++] = i;
+    }
+}
+
+static float sdv__radius(sdv__build *b, uint32_t i) {
+    float r = b->desc->radii ? b->desc->radii[i] : 0.0f;
+    if (!(r >= 0.0f && r <= 1e9f)) {
+        sdv__warn(b, SDV_LOG_RADIUS_MISSING, i);
+        return 0.0f;
+    }
+    if (r == 0.0f && b->desc->radii) {
+        sdv__warn(b, SDV_LOG_RADIUS_ZERO, i);
+    }
+    return r + 0.0f;
+}
+
+/* Gives the nodes that stay their final indices, in the order of the desc. */
+static void sdv__pick_nodes(sdv__build *b) {
+    uint32_t i, n = b->desc->node_count;
+    int drop = (b->desc->flags & SDV_TREE_DROP) && b->segment_count > 0;
+    memset(b->degree, 0, n * sizeof *b->degree);
+    for (i = 0; i < b->segment_count; i++) {
+        b->degree[b->segments[i].parent]++;
+        b->degree[b->segments[i].child]++;
+    }
+    for (i = 0; i < n; i++) {
+        if (b->target[i] < i) { /* merged: the first one has its index already */
+            uint32_t first = b->target[b->target[i]];
+            b->target[i] = first;
+            if (first != SDV_NONE) {
+                float r = sdv__radius(b, i);
+                b->radius[first] = r > b->radius[first] ? r : b->radius[first];
+            }
+        } else if (drop && b->degree[i] == 0) {
+            sdv__warn(b, SDV_LOG_NODES_ISOLATED, i);
+            b->target[i] = SDV_NONE;
+        } else {
+            b->degree[b->node_count] = b->degree[i];
+            b->radius[b->node_count] = sdv__radius(b, i);
+            b->source[b->node_count] = i;
+            b->target[i] = b->node_count++;
+        }
+    }
+    for (i = 0; i < b->segment_count; i++) {
+        b->segments[i].parent = b->target[b->segments[i].parent];
+        b->segments[i].child = b->target[b->segments[i].child];
+    }
+}
+
+static const float *sdv__build_position(const sdv__build *b, uint32_t node) {
+    return b->desc->positions + 3 * (size_t)b->source[node];
+}
+
+/* Union-find with path halving; a group is named by its lowest node. */
+static uint32_t sdv__group(uint32_t *group, uint32_t i) {
+    while (group[i] != i) {
+        group[i] = group[group[i]];
+        i = group[i];
+    }
+    return i;
+}
+static int sdv__unite(uint32_t *group, uint32_t a, uint32_t b) {
+    a = sdv__group(group, a);
+    b = sdv__group(group, b);
+    if (a < b) {
+        group[b] = a;
+    } else {
+        group[a] = b;
+    }
+    return a != b;
+}
+static void sdv__group_segments(sdv__build *b) {
+    uint32_t i;
+    for (i = 0; i < b->node_count; i++) {
+        b->group[i] = i;
+    }
+    for (i = 0; i < b->segment_count; i++) {
+        sdv__unite(b->group, b->segments[i].parent, b->segments[i].child);
+    }
+}
+
+/* ---- joining: spheres lie in hashed cells at least as wide as they are, one grid per power of
+   two, so that whatever holds a point is in the 27 cells around it */
+static int sdv__sphere_level(float radius) {
+    int exponent;
+    (void)frexpf(radius, &exponent);
+    return exponent; /* radius < 2^exponent = width of the cells */
+}
+static uint32_t sdv__cell_slot(const sdv__build *b, const float *p, int level, const int step[3]) {
+    uint32_t h = (uint32_t)level;
+    int k;
+    for (k = 0; k < 3; k++) {
+        double cell = floor(ldexp((double)p[k], -level)) + step[k];
+        uint64_t bits;
+        memcpy(&bits, &cell, sizeof bits);
+        h = sdv__mix(h, (uint32_t)bits, (uint32_t)(bits >> 32));
+    }
+    return h & b->table_mask;
+}
+static double sdv__distance2(const float *p, const float *q) {
+    double x = (double)p[0] - (double)q[0], y = (double)p[1] - (double)q[1],
+           z = (double)p[2] - (double)q[2];
+    return x * x + y * y + z * z;
+}
+/* The nearest node of another component whose sphere holds the point; SDV_NONE: none. */
+static uint32_t sdv__holder(const sdv__build *b, uint32_t end, uint64_t levels) {
+    const float *p = sdv__build_position(b, end);
+    uint32_t own = sdv__group(b->group, end), best = SDV_NONE;
+    double least = 0;
+    int level, i;
+    for (level = -149; level <= 30; level++) {
+        int bit = level < -31 ? 0 : level + 32; /* the smallest share a flag */
+        if (!(levels >> bit & 1)) {
+            continue;
+        }
+        for (i = 0; i < 27; i++) {
+            int step[3];
+            uint32_t node;
+            step[0] = i % 3 - 1;
+            step[1] = i / 3 % 3 - 1;
+            step[2] = i / 9 - 1;
+            node = b->table[sdv__cell_slot(b, p, level, step)];
+            for (; node != SDV_NONE; node = b->next[node]) {
+                double r = (double)b->radius[node];
+                double d = sdv__distance2(p, sdv__build_position(b, node));
+                if (d <= r * r && sdv__group(b->group, node) != own &&
+                    (best == SDV_NONE || d < least || (d == least && node < best))) {
+                    best = node;
+                    least = d;
+                }
+            }
+        }
+    }
+    return best;
+}
+static void sdv__join(sdv__build *b) {
+    static const int here[3] = {0, 0, 0};
+    uint32_t i, ends = b->node_count;
+    uint64_t levels = 0;
+    memset(b->table, 0xff, ((size_t)b->table_mask + 1) * sizeof *b->table);
+    for (i = 0; i < b->node_count; i++) {
+        if (b->radius[i] > 0.0f) {
+            int level = sdv__sphere_level(b->radius[i]);
+            uint32_t slot = sdv__cell_slot(b, sdv__build_position(b, i), level, here);
+            levels |= (uint64_t)1 << (level < -31 ? 0 : level + 32);
+            b->next[i] = b->table[slot];
+            b->table[slot] = i;
+        }
+    }
+    for (i = 0; i < ends; i++) {
+        uint32_t node = b->degree[i] <= 1 ? sdv__holder(b, i, levels) : SDV_NONE;
+        if (node != SDV_NONE) {
+            sdv__unite(b->group, i, node);
+            b->segments[b->segment_count].parent = node;
+            b->segments[b->segment_count].child = i;
+            b->segment_source[b->segment_count++] = SDV_NONE;
+            b->joined++;
+            sdv__warn(b, SDV_LOG_LINES_JOINED, b->source[i]);
+        }
+    }
+}
+
+/* The segments of each node, ascending. */
+static void sdv__build_incidence(sdv__build *b) {
+    uint32_t i, sum = 0;
+    memset(b->first, 0, ((size_t)b->node_count + 1) * sizeof *b->first);
+    for (i = 0; i < b->segment_count; i++) {
+        b->first[b->segments[i].parent]++;
+        b->first[b->segments[i].child]++;
+    }
+    for (i = 0; i <= b->node_count; i++) {
+        uint32_t count = i < b->node_count ? b->first[i] : 0;
+        b->first[i] = sum;
+        sum += count;
+    }
+    for (i = 0; i < b->segment_count; i++) { /* first = the next free place, */
+        b->incident[b->first[b->segments[i].parent]++] = i;
+        b->incident[b->first[b->segments[i].child]++] = i;
+    }
+    for (i = b->node_count; i > 0; i--) { /* and back */
+        b->first[i] = b->first[i - 1];
+    }
+    b->first[0] = 0;
+}
+
+static void sdv__tree_parts(const sdv__build *b, sdv_tree *t, sdv__block *block) {
+    const sdv_tree_desc *desc = b->desc;
+    uint64_t n = t->node_count, m = t->segment_count;
+    uint32_t i;
+    t->nodes = (lao_v4 *)sdv__part(block, n, sizeof(lao_v4));
+    t->segments = (sdv_segment *)sdv__part(block, m, sizeof(sdv_segment));
+    t->roots = sdv__part_u32(block, t->root_count);
+    t->parents = sdv__part_u32(block, n);
+    t->parent_segments = sdv__part_u32(block, n);
+    t->components = sdv__part_u32(block, n);
+    t->order = sdv__part_u32(block, n);
+    t->child_counts = sdv__part_u32(block, n);
+    t->node_sources = sdv__part_u32(block, n);
+    t->segment_sources = sdv__part_u32(block, m);
+    t->node_targets = sdv__part_u32(block, t->source_count);
+    t->node_attributes =
+        (sdv_attribute *)sdv__part(block, t->node_attribute_count, sizeof(sdv_attribute));
+    t->segment_attributes =
+        (sdv_attribute *)sdv__part(block, t->segment_attribute_count, sizeof(sdv_attribute));
+    for (i = 0; i < t->node_attribute_count + t->segment_attribute_count; i++) {
+        int of_node = i < t->node_attribute_count;
+        uint32_t k = of_node ? i : i - t->node_attribute_count;
+        const sdv_attribute *from =
+            (of_node ? desc->node_attributes : desc->segment_attributes) + k;
+        uint32_t components = from->components ? from->components : 1;
+        char *name = (char *)sdv__part(block, strlen(from->name) + 1, 1);
+        float *values = (float *)sdv__part(block, (of_node ? n : m) * components, sizeof(float));
+        if (block->base) {
+            sdv_attribute *to = (of_node ? t->node_attributes : t->segment_attributes) + k;
+            memcpy(name, from->name, strlen(from->name) + 1);
+            to->name = name;
+            to->components = components;
+            to->values = values;
+        }
+    }
+}
+
+/* Copies the values of an attribute; a source SDV_NONE has none. */
+static void sdv__attribute_copy(const sdv_attribute *from, const sdv_attribute *to,
+                                const uint32_t *sources, uint32_t count) {
+    float *values = (float *)(uintptr_t)to->values;
+    uint32_t i, k, n = to->components;
+    for (i = 0; i < count; i++) {
+        for (k = 0; k < n; k++) {
+            values[(size_t)i * n + k] = sources[i] == SDV_NONE
+                                            ? lao_bits_float(0x7fc00000u)
+                                            : from->values[(size_t)sources[i] * n + k];
+        }
+    }
+}
+
+/* Per component its root: the lowest node that no segment enters, else the first node of its first
+   segment, else the node itself. */
+static void sdv__tree_roots(sdv__build *b, sdv_tree *t) {
+    uint32_t i, directed = !(b->desc->flags & SDV_TREE_UNDIRECTED);
+    uint32_t *root = t->roots;
+    for (i = 0; i < t->root_count; i++) {
+        root[i] = SDV_NONE;
+    }
+    for (i = 0; directed && i < t->node_count; i++) {
+        if (b->entered[i] == 0 && root[t->components[i]] == SDV_NONE) {
+            root[t->components[i]] = i;
+        }
+    }
+    for (i = 0; i < t->segment_count; i++) {
+        uint32_t c = t->components[b->segments[i].parent];
+        root[c] = root[c] == SDV_NONE ? b->segments[i].parent : root[c];
+    }
+    for (i = 0; i < t->node_count; i++) {
+        uint32_t c = t->components[i];
+        root[c] = root[c] == SDV_NONE ? i : root[c];
+    }
+}
+
+static void sdv__visit(sdv_tree *t, uint32_t node, uint32_t parent, uint32_t segment,
+                       uint32_t *tail) {
+    t->parents[node] = parent;
+    t->parent_segments[node] = segment;
+    t->order[(*tail)++] = node;
+}
+
+/* Breadth first along the segments; against them only when nothing else is left. */
+static void sdv__tree_grow(sdv__build *b, sdv_tree *t) {
+    uint32_t undirected = b->desc->flags & SDV_TREE_UNDIRECTED;
+    uint32_t i, k, head = 0, tail = 0, later_head = 0, later_tail = 0;
+    const uint32_t unseen = SDV_NONE - 1;
+    for (i = 0; i < t->node_count; i++) {
+        t->parents[i] = unseen;
+    }
+    for (i = 0; i < t->root_count; i++) {
+        sdv__visit(t, t->roots[i], SDV_NONE, SDV_NONE, &tail);
+        while (head < tail || later_head < later_tail) {
+            if (head == tail) {
+                uint32_t e = b->later[later_head++];
+                if (t->parents[b->segments[e].parent] == unseen) {
+                    b->turned[e] = 1;
+                    sdv__visit(t, b->segments[e].parent, b->segments[e].child, e, &tail);
+                }
+                continue;
+            }
+            for (k = b->first[t->order[head]]; k < b->first[t->order[head] + 1]; k++) {
+                uint32_t node = t->order[head], e = b->incident[k];
+                int along = b->segments[e].parent == node;
+                uint32_t other = along ? b->segments[e].child : b->segments[e].parent;
+                if (t->parents[other] != unseen) {
+                    continue;
+                }
+                if (along || undirected || b->segment_source[e] == SDV_NONE) {
+                    b->turned[e] = (unsigned char)!along;
+                    sdv__visit(t, other, node, e, &tail);
+                } else {
+                    b->later[later_tail++] = e;
+                }
+            }
+            head++;
+        }
+    }
+}
+
+/* Final directions: along the tree; loops of undirected segments from the node reached first. */
+static void sdv__tree_segments(sdv__build *b, sdv_tree *t) {
+    uint32_t i, *place = b->first; /* free by now */
+    for (i = 0; i < t->node_count; i++) {
+        place[t->order[i]] = i;
+    }
+    for (i = 0; i < t->segment_count; i++) {
+        sdv_segment s = b->segments[i];
+        int tree = t->parent_segments[s.parent] == i || t->parent_segments[s.child] == i;
+        int undirected = (b->desc->flags & SDV_TREE_UNDIRECTED) || b->segment_source[i] == SDV_NONE;
+        if (tree ? b->turned[i] : (undirected && place[s.parent] > place[s.child])) {
+            uint32_t swap = s.parent;
+            s.parent = s.child;
+            s.child = swap;
+            if (!undirected) {
+                sdv__warn(b, SDV_LOG_SEGMENTS_TURNED, b->segment_source[i]);
+            }
+        }
+        t->segments[i] = s;
+        t->segment_sources[i] = b->segment_source[i];
+        t->child_counts[s.parent]++;
+        if (!tree) {
+            sdv__warn(b, SDV_LOG_TREE_LOOPS, b->segment_source[i]);
+        }
+        if (memcmp(&t->nodes[s.parent], &t->nodes[s.child], 3 * sizeof(float)) == 0) {
+            sdv__warn(b, SDV_LOG_SEGMENTS_ZERO, b->segment_source[i]);
+        }
+    }
+}
+
+static void sdv__tree_nodes(const sdv__build *b, sdv_tree *t) {
+    uint32_t i, k;
+    for (i = 0; i < t->node_count; i++) {
+        const float *p = sdv__build_position(b, i);
+        t->nodes[i].x = p[0] + 0.0f;
+        t->nodes[i].y = p[1] + 0.0f;
+        t->nodes[i].z = p[2] + 0.0f;
+        t->nodes[i].w = b->radius[i];
+        t->node_sources[i] = b->source[i];
+        t->child_counts[i] = 0;
+    }
+    memcpy(t->node_targets, b->target, t->source_count * sizeof *b->target);
+    for (k = 0; k < t->node_attribute_count; k++) {
+        sdv__attribute_copy(b->desc->node_attributes + k, t->node_attributes + k, t->node_sources,
+                            t->node_count);
+    }
+    for (k = 0; k < t->segment_attribute_count; k++) {
+        sdv__attribute_copy(b->desc->segment_attributes + k, t->segment_attributes + k,
+                            b->segment_source, t->segment_count);
+    }
+}
+
+static void sdv__tree_components(sdv__build *b, sdv_tree *t) {
+    uint32_t i, n = 0;
+    for (i = 0; i < t->node_count;
+         i++) { /* a group is named by its lowest node, which comes first */
+        uint32_t g = sdv__group(b->group, i);
+        t->components[i] = g == i ? n++ : t->components[g];
+    }
+    memset(b->entered, 0, t->node_count * sizeof *b->entered);
+    for (i = 0; i < t->segment_count; i++) {
+        b->entered[b->segments[i].child] += b->segment_source[i] != SDV_NONE;
+    }
+}
+
+static void sdv__tree_info(const sdv__build *b, sdv_tree *t) {
+    sdv_tree_info *info = &t->info;
+    uint32_t i, k, seen = 0;
+    memset(info, 0, sizeof *info);
+    info->nodes = t->node_count;
+    info->segments = t->segment_count;
+    info->roots = t->root_count;
+    info->loops = t->segment_count + t->root_count - t->node_count;
+    info->joined = b->joined;
+    for (i = 0; i < t->node_count; i++) {
+        uint32_t children = t->child_counts[i];
+        const float *p = &t->nodes[i].x;
+        info->leaves += children == 0 && t->parents[i] != SDV_NONE;
+        info->branches += children >= 2;
+        info->multifurcations += children >= 3;
+        info->max_children = children > info->max_children ? children : info->max_children;
+        for (k = 0; k < 3; k++) {
+            float v = p[k];
+            info->bounds[0][k] = i == 0 || v < info->bounds[0][k] ? v : info->bounds[0][k];
+            info->bounds[1][k] = i == 0 || v > info->bounds[1][k] ? v : info->bounds[1][k];
+        }
+    }
+    for (i = 0; b->desc->radii && i < b->desc->node_count; i++) {
+        float r = b->desc->radii[i];
+        if (b->target[i] != SDV_NONE && r - r == 0.0f) {
+            info->radius[0] = !seen || r < info->radius[0] ? r : info->radius[0];
+            info->radius[1] = !seen || r > info->radius[1] ? r : info->radius[1];
+            seen = 1;
+        }
+    }
+}
+
+static size_t sdv__warning_text(const sdv_warning *w, char *text, size_t size) {
+    int n;
+    if (w->first == SDV_NONE) {
+        n = snprintf(text, size, "%s (%u)", sdv__items[w->item].text, w->count);
+    } else {
+        n = snprintf(text, size, "%s (%u, first: %u)", sdv__items[w->item].text, w->count,
+                     w->first);
+    }
+    return (size_t)n;
+}
+SDV_API size_t sdv_tree_warning_text(const sdv_tree *tree, uint32_t i, char *text, size_t size) {
+    if (!tree || i >= tree->warning_count) {
+        if (size) {
+            text[0] = 0;
+        }
+        return 0;
+    }
+    return sdv__warning_text(tree->warnings + i, text, size);
+}
+static void sdv__tree_warnings(sdv__build *b, sdv_tree *t) {
+    uint32_t i;
+    for (i = 1; i < t->root_count; i++) {
+        sdv__warn(b, SDV_LOG_TREE_ROOTS, t->roots[0]);
+    }
+    for (i = 0; i < b->warning_count; i++) {
+        char text[256];
+        if (b->warnings[i].item == SDV_LOG_TREE_ROOTS) {
+            b->warnings[i].count = t->root_count;
+        }
+        sdv__warning_text(b->warnings + i, text, sizeof text);
+        if (b->host && b->host->log) {
+            b->host->log(b->host->user, b->warnings[i].item, LAO_OK, text);
+        }
+    }
+    memcpy(t->warnings, b->warnings, sizeof t->warnings);
+    t->warning_count = b->warning_count;
+}
+
+/* The tree from what was picked. */
+static lao_result sdv__tree_finish(sdv__build *b, sdv_tree *out) {
+    sdv_tree t;
+    sdv__block block = {NULL, 0};
+    uint32_t i;
+    memset(&t, 0, sizeof t);
+    t.node_count = b->node_count;
+    t.segment_count = b->segment_count;
+    t.source_count = b->desc->node_count;
+    t.node_attribute_count = b->desc->node_attribute_count;
+    t.segment_attribute_count = b->desc->segment_attribute_count;
+    for (i = 0; i < b->node_count; i++) {
+        t.root_count += b->group[i] == i;
+    }
+    sdv__tree_parts(b, &t, &block);
+    t.memory = sdv__take(&b->allocator, block.used, 1);
+    if (!t.memory) {
+        return sdv__fail(b->host, SDV_LOG_MEMORY, "the tree");
+    }
+    block.base = (unsigned char *)t.memory;
+    block.used = 0;
+    sdv__tree_parts(b, &t, &block);
+    t.allocator = b->allocator;
+    sdv__build_incidence(b);
+    sdv__tree_nodes(b, &t);
+    sdv__tree_components(b, &t);
+    sdv__tree_roots(b, &t);
+    sdv__tree_grow(b, &t);
+    sdv__tree_segments(b, &t);
+    sdv__tree_info(b, &t);
+    sdv__tree_warnings(b, &t);
+    *out = t;
+    return LAO_OK;
+}
+
+SDV_API lao_result sdv_tree_build(const sdv_host *host, const sdv_tree_desc *desc, sdv_tree *tree) {
+    sdv__build b;
+    sdv__block block = {NULL, 0};
+    lao_result result;
+    if (!desc || !tree) {
+        return sdv__fail(host, SDV_LOG_NULL_ARGUMENT, "sdv_tree_build");
+    }
+    result = sdv__tree_check(host, desc);
+    if (result != LAO_OK) {
+        return result;
+    }
+    memset(&b, 0, sizeof b);
+    b.host = host;
+    b.desc = desc;
+    b.allocator = sdv__allocator(host);
+    sdv__build_parts(&b, &block);
+    block.base = (unsigned char *)sdv__take(&b.allocator, block.used, 1);
+    if (!block.base) {
+        return sdv__fail(host, SDV_LOG_MEMORY, "building a tree of %u nodes", desc->node_count);
+    }
+    block.used = 0;
+    sdv__build_parts(&b, &block);
+    memset(b.turned, 0, (size_t)desc->node_count + desc->segment_count);
+    sdv__merge(&b);
+    sdv__pick_segments(&b);
+    sdv__pick_nodes(&b);
+    sdv__group_segments(&b);
+    if (desc->flags & SDV_TREE_JOIN) {
+        sdv__join(&b);
+    }
+    result = sdv__tree_finish(&b, tree);
+    sdv__give(&b.allocator, block.base);
+    return result;
+}
+
+SDV_API void sdv_tree_free(sdv_tree *tree) {
+    if (tree && tree->memory) {
+        sdv__give(&tree->allocator, tree->memory);
+        memset(tree, 0, sizeof *tree);
+    }
+}
+
+/* ================================================================================================
+ * reduced tree */
+
+static void sdv__reduced_parts(sdv_reduced *r, uint32_t tree_nodes, sdv__block *block) {
+    r->ids = sdv__part_u32(block, r->node_count);
+    r->nodes = sdv__part_u32(block, r->node_count);
+    r->parents = sdv__part_u32(block, r->node_count);
+    r->children = sdv__part_u32(block, 2 * (uint64_t)r->node_count);
+    r->order = sdv__part_u32(block, r->node_count);
+    r->roots = sdv__part_u32(block, r->root_count);
+    r->owners = sdv__part_u32(block, tree_nodes);
+}
+
+/* Children along the spanning tree. */
+static void sdv__count_children(const sdv_tree *t, uint32_t *counts) {
+    uint32_t i;
+    memset(counts, 0, t->node_count * sizeof *counts);
+    for (i = 0; i < t->node_count; i++) {
+        if (t->parents[i] != SDV_NONE) {
+            counts[t->parents[i]]++;
+        }
+    }
+}
+static int sdv__is_kept(const sdv_tree *t, const uint32_t *counts, uint32_t i) {
+    return counts[i] != 1 || t->parents[i] == SDV_NONE;
+}
+static uint32_t sdv__extra_count(const sdv_tree *t, const uint32_t *counts, uint32_t i) {
+    uint32_t root = t->parents[i] == SDV_NONE;
+    return counts[i] < 2 ? 0 : counts[i] - 2 + root;
+}
+
+/* Owners, upwards: a node between branches belongs to the first kept node below it. */
+static void sdv__reduced_owners(const sdv_tree *t, const uint32_t *counts, sdv_reduced *r) {
+    uint32_t i, n = 0;
+    for (i = 0; i < t->node_count; i++) {
+        if (sdv__is_kept(t, counts, i)) {
+            r->ids[n] = i;
+            r->nodes[n] = i;
+            r->owners[i] = n++;
+        }
+    }
+    for (i = t->node_count; i-- > 0;) {
+        uint32_t node = t->order[i], parent = t->parents[node];
+        if (parent != SDV_NONE && !sdv__is_kept(t, counts, parent)) {
+            r->owners[parent] = r->owners[node];
+        }
+    }
+}
+
+/* Hangs `children`, ascending, below the kept node k; extra nodes are taken from *extra on. */
+static void sdv__reduced_hang(sdv_reduced *r, uint32_t k, int root, const uint32_t *children,
+                              uint32_t count, uint32_t first_id, uint32_t first_extra,
+                              uint32_t *extra) {
+    uint32_t at = k, i = 0;
+    while (count - i > (at == k && root ? 1u : 2u)) {
+        uint32_t e = (*extra)++, only = at == k && root;
+        r->ids[e] = first_id + (e - first_extra);
+        r->nodes[e] = r->nodes[k];
+        r->parents[e] = at;
+        if (!only) {
+            r->parents[children[i]] = at;
+        }
+        r->children[2 * (size_t)at] = only ? e : children[i++];
+        r->children[2 * (size_t)at + 1] = only ? SDV_NONE : e;
+        at = e;
+    }
+    for (k = 0; k < 2; k++) {
+        uint32_t child = i + k < count ? children[i + k] : SDV_NONE;
+        r->children[2 * (size_t)at + k] = child;
+        if (child != SDV_NONE) {
+            r->parents[child] = at;
+        }
+    }
+}
+
+static void sdv__reduced_fill(const sdv_tree *t, const uint32_t *counts, uint32_t kept,
+                              uint32_t *first, uint32_t *list, sdv_reduced *r) {
+    uint32_t k, sum = 0, extra = kept, roots = 0, head = 0, tail = 0;
+    sdv__reduced_owners(t, counts, r);
+    for (k = 0; k < kept; k++) { /* parents and child lists of the kept nodes, ascending */
+        first[k] = sum;
+        sum += counts[r->ids[k]];
+    }
+    for (k = 0; k < kept; k++) {
+        uint32_t up = t->parents[r->ids[k]];
+        while (up != SDV_NONE && !sdv__is_kept(t, counts, up)) {
+            up = t->parents[up];
+        }
+        r->parents[k] = SDV_NONE;
+        if (up != SDV_NONE) {
+            list[first[r->owners[up]]++] = k;
+        } else {
+            r->roots[roots++] = k;
+        }
+    }
+    for (k = 0; k < kept; k++) {
+        uint32_t n = counts[r->ids[k]], root = t->parents[r->ids[k]] == SDV_NONE;
+        sdv__reduced_hang(r, k, (int)root, list + (first[k] - n), n, t->node_count, kept, &extra);
+    }
+    for (k = 0; k < roots; k++) {
+        r->order[tail++] = r->roots[k];
+    }
+    for (; head < tail; head++) {
+        for (k = 0; k < 2; k++) {
+            uint32_t child = r->children[2 * (size_t)r->order[head] + k];
+            if (child != SDV_NONE) {
+                r->order[tail++] = child;
+            }
+        }
+    }
+}
+
+SDV_API lao_result sdv_reduce(const sdv_host *host, const sdv_tree *tree, sdv_reduced *reduced) {
+    lao_allocator a = sdv__allocator(host);
+    sdv__block block = {NULL, 0};
+    sdv_reduced r;
+    uint32_t i, kept = 0, *scratch;
+    uint64_t n;
+    if (!tree || !reduced || !tree->memory) {
+        return sdv__fail(host, SDV_LOG_NULL_ARGUMENT, "sdv_reduce");
+    }
+    n = tree->node_count;
+    scratch = (uint32_t *)sdv__take(&a, 3 * n, sizeof *scratch); /* counts, first, list */
+    if (!scratch) {
+        return sdv__fail(host, SDV_LOG_MEMORY, "reducing a tree of %u nodes", tree->node_count);
+    }
+    memset(&r, 0, sizeof r);
+    r.allocator = a;
+    sdv__count_children(tree, scratch);
+    for (i = 0; i < tree->node_count; i++) {
+        kept += (uint32_t)sdv__is_kept(tree, scratch, i);
+        r.node_count += sdv__extra_count(tree, scratch, i);
+        r.root_count += tree->parents[i] == SDV_NONE;
+    }
+    r.node_count += kept;
+    sdv__reduced_parts(&r, tree->node_count, &block);
+    r.memory = sdv__take(&a, block.used, 1);
+    if (!r.memory) {
+        sdv__give(&a, scratch);
+        return sdv__fail(host, SDV_LOG_MEMORY, "a reduced tree of %u nodes", r.node_count);
+    }
+    block.base = (unsigned char *)r.memory;
+    block.used = 0;
+    sdv__reduced_parts(&r, tree->node_count, &block);
+    sdv__reduced_fill(tree, scratch, kept, scratch + n, scratch + 2 * n, &r);
+    sdv__give(&a, scratch);
+    *reduced = r;
+    return LAO_OK;
+}
+
+SDV_API void sdv_reduced_free(sdv_reduced *reduced) {
+    if (reduced && reduced->memory) {
+        sdv__give(&reduced->allocator, reduced->memory);
+        memset(reduced, 0, sizeof *reduced);
+    }
+}
+
+/* ================================================================================================
+ * layout */
+
+typedef struct sdv__layout_work {
+    const sdv_reduced *r;
+    double *h, *s, *low, *high, *weight;
+    double ph;
+} sdv__layout_work;
+
+static double sdv__scalar(const float *scalars, uint32_t node) {
+    double v = scalars ? (double)scalars[node] : 1.0;
+    return v > 0.0 && v <= 3.5e38 ? v : 0.0;
+}
+
+/* Weights (METHODS 8): the sum over the sub-tree, in the reduced tree or in the whole one. Extra
+   nodes count as nodes and carry no scalar. */
+static void sdv__layout_weights(const sdv_tree *t, const sdv_layout_desc *desc,
+                                sdv__layout_work *w) {
+    const sdv_reduced *r = w->r;
+    uint32_t i, n = r->node_count, own = desc->flags & SDV_LAYOUT_OWN;
+    double least = 0;
+    for (i = 0; i < n; i++) {
+        int extra = r->ids[i] >= t->node_count;
+        w->weight[i] =
+            !extra || own ? sdv__scalar(desc->scalars, r->nodes[i]) : (desc->scalars ? 0.0 : 1.0);
+    }
+    for (i = 0; !own && (desc->flags & SDV_LAYOUT_ALL_NODES) && i < t->node_count; i++) {
+        if (r->ids[r->owners[i]] != i) {
+            w->weight[r->owners[i]] += sdv__scalar(desc->scalars, i);
+        }
+    }
+    for (i = n; !own && i-- > 0;) {
+        uint32_t node = r->order[i], parent = r->parents[node];
+        if (parent != SDV_NONE) {
+            w->weight[parent] += w->weight[node];
+        }
+    }
+    for (i = 0; i < n; i++) {
+        if (w->weight[i] > 0 && (least == 0 || w->weight[i] < least)) {
+            least = w->weight[i];
+        }
+    }
+    for (i = 0; i < n; i++) {
+        if (!(w->weight[i] > 0)) {
+            w->weight[i] = least > 0 ? least : 1.0;
+        }
+    }
+}
+
+/* Roots and their children lie at the same place; several roots share [0, 1]. */
+static void sdv__layout_start(sdv__layout_work *w) {
+    const sdv_reduced *r = w->r;
+    double sum = 0, at = 0;
+    uint32_t i;
+    for (i = 0; i < r->root_count; i++) {
+        sum += w->weight[r->roots[i]];
+    }
+    for (i = 0; i < r->root_count; i++) {
+        uint32_t root = r->roots[i], child = r->children[2 * (size_t)root];
+        double low = at / sum;
+        at += w->weight[root];
+        w->low[root] = low;
+        w->high[root] = i + 1 == r->root_count ? 1.0 : at / sum;
+        w->h[root] = 0.5 * (low + w->high[root]);
+        w->s[root] = 1.0;
+        if (child != SDV_NONE) {
+            w->low[child] = low;
+            w->high[child] = w->high[root];
+            w->h[child] = w->h[root];
+            w->s[child] = 1.0;
+        }
+    }
+}
+
+/* Algorithm 1, lines 3 to 12, for one node with two children. */
+static void sdv__layout_children(sdv__layout_work *w, uint32_t n) {
+    uint32_t c1 = w->r->children[2 * (size_t)n], c2 = w->r->children[2 * (size_t)n + 1];
+    double w1 = w->weight[c1], w2 = w->weight[c2], r1 = w->low[n], r2 = w->high[n];
+    double less = w1 < w2 ? w1 / w2 : w2 / w1, more = w1 < w2 ? w2 / w1 : w1 / w2;
+    double share = w1 / (w1 + w2), exponent = w->ph * more;
+    double wr = pow(less, exponent < 1e6 ? exponent : 1e6);
+    double middle = r1 + (r2 - r1) * share;
+    double m1 = (wr - 1) * (0.5 * (r1 + middle) - w->h[n]);
+    double m2 = (wr - 1) * (0.5 * (middle + r2) - w->h[n]);
+    w->s[c1] = w->s[n] - (w1 < w2 ? sqrt(less) : 1.0);
+    w->s[c2] = w->s[n] - (w2 < w1 ? sqrt(less) : 1.0);
+    w->low[c1] = r1 + m1;
+    w->high[c1] = middle + m1;
+    w->low[c2] = middle + m2;
+    w->high[c2] = r2 + m2;
+    w->h[c1] = 0.5 * (w->low[c1] + w->high[c1]);
+    w->h[c2] = 0.5 * (w->low[c2] + w->high[c2]);
+}
+
+static void sdv__layout_parts(sdv_layout *l, sdv__block *block) {
+    l->h = (float *)sdv__part(block, l->node_count, sizeof(float));
+    l->s = (float *)sdv__part(block, l->node_count, sizeof(float));
+    l->weights = (float *)sdv__part(block, l->node_count, sizeof(float));
+}
+
+static void sdv__layout_finish(const sdv__layout_work *w, sdv_layout *l) {
+    uint32_t i;
+    double least = 1.0;
+    for (i = 0; i < l->node_count; i++) {
+        least = w->s[i] < least ? w->s[i] : least;
+    }
+    for (i = 0; i < l->node_count; i++) {
+        double s = least < 1.0 ? (w->s[i] - least) / (1.0 - least) : 1.0;
+        double h = w->h[i] < 0.0 ? 0.0 : w->h[i] > 1.0 ? 1.0 : w->h[i];
+        l->h[i] = (float)h;
+        l->s[i] = (float)s;
+        l->weights[i] = (float)w->weight[i];
+    }
+}
+
+SDV_API lao_result sdv_layout_make(const sdv_host *host, const sdv_tree *tree,
+                                   const sdv_reduced *reduced, const sdv_layout_desc *desc,
+                                   sdv_layout *layout) {
+    const sdv_layout_desc standard = {NULL, 0, 0, 0};
+    sdv__layout_work w;
+    sdv__block block = {NULL, 0};
+    sdv_layout l;
+    double *scratch;
+    uint32_t i;
+    if (!tree || !reduced || !layout || !reduced->memory || !tree->memory) {
+        return sdv__fail(host, SDV_LOG_NULL_ARGUMENT, "sdv_layout_make");
+    }
+    desc = desc ? desc : &standard;
+    if (desc->has_ph && !(desc->ph >= 0.0f)) {
+        return sdv__fail(host, SDV_LOG_LAYOUT_PH, NULL);
+    }
+    memset(&l, 0, sizeof l);
+    l.node_count = reduced->node_count;
+    l.allocator = sdv__allocator(host);
+    scratch = (double *)sdv__take(&l.allocator, 5 * (uint64_t)l.node_count, sizeof *scratch);
+    sdv__layout_parts(&l, &block);
+    l.memory = scratch ? sdv__take(&l.allocator, block.used, 1) : NULL;
+    if (!l.memory) {
+        sdv__give(&l.allocator, scratch);
+        return sdv__fail(host, SDV_LOG_MEMORY, "a layout of %u nodes", l.node_count);
+    }
+    block.base = (unsigned char *)l.memory;
+    block.used = 0;
+    sdv__layout_parts(&l, &block);
+    w.r = reduced;
+    w.h = scratch;
+    w.s = scratch + l.node_count;
+    w.low = scratch + 2 * (size_t)l.node_count;
+    w.high = scratch + 3 * (size_t)l.node_count;
+    w.weight = scratch + 4 * (size_t)l.node_count;
+    w.ph = desc->has_ph ? (double)desc->ph : 4.0 / (double)l.node_count;
+    sdv__layout_weights(tree, desc, &w);
+    sdv__layout_start(&w);
+    for (i = 0; i < l.node_count; i++) {
+        if (reduced->children[2 * (size_t)reduced->order[i] + 1] != SDV_NONE) {
+            sdv__layout_children(&w, reduced->order[i]);
+        }
+    }
+    sdv__layout_finish(&w, &l);
+    sdv__give(&l.allocator, scratch);
+    *layout = l;
+    return LAO_OK;
+}
+
+SDV_API void sdv_layout_free(sdv_layout *layout) {
+    if (layout && layout->memory) {
+        sdv__give(&layout->allocator, layout->memory);
+        memset(layout, 0, sizeof *layout);
+    }
+}
+
+/* Formatted text to a writer; a locale's decimal comma becomes a point. Numbers only. */
+static int sdv__print(const sdv_writer *writer, const char *format, ...) {
+    char text[512];
+    va_list list;
+    int n;
+    va_start(list, format);
+    n = vsnprintf(text, sizeof text, format, list);
+    va_end(list);
+    if (n < 0 || (size_t)n >= sizeof text) {
+        n = 0;
+    }
+    return writer->write(writer->user, text, (size_t)n);
+}
+/* A number as JSON and SVG want it, in `text`; "null" where it is none. */
+enum { SDV__NUMBER = 32 };
+static const char *sdv__number(double v, char text[SDV__NUMBER]) {
+    char *p;
+    if (!(v - v == 0.0)) {
+        return "null";
+    }
+    snprintf(text, SDV__NUMBER, "%.9g", v);
+    for (p = text; *p; p++) {
+        *p = *p == ',' ? '.' : *p;
+    }
+    return text;
+}
+
+SDV_API int sdv_layout_write_json(const sdv_reduced *reduced, const sdv_layout *layout,
+                                  const float *distances, const sdv_writer *writer) {
+    uint32_t i;
+    int stop = sdv__print(writer, "{\"nodes\":[");
+    for (i = 0; !stop && i < reduced->node_count; i++) {
+        char h[SDV__NUMBER], s[SDV__NUMBER], w[SDV__NUMBER], d[SDV__NUMBER];
+        uint32_t parent = reduced->parents[i];
+        stop = sdv__print(
+            writer,
+            "%s\n{\"id\":%u,\"parent\":%lld,\"h\":%s,\"s\":%s,\"weight\":%s,\"distance\":%s}",
+            i ? "," : "", reduced->ids[i],
+            parent == SDV_NONE ? -1LL : (long long)reduced->ids[parent],
+            sdv__number((double)layout->h[i], h), sdv__number((double)layout->s[i], s),
+            sdv__number((double)layout->weights[i], w),
+            distances ? sdv__number((double)distances[i], d) : "null");
+    }
+    return stop ? stop : sdv__print(writer, "\n]}\n");
+}
+
+static lao_v2 sdv__layout_place(const sdv_layout *l, const sdv_svg_desc *d, uint32_t i) {
+    float margin = 0.03f, free_width = d->width * (1 - 2 * margin),
+          free_height = d->height * (1 - 2 * margin);
+    if (d->radial) {
+        float reach = 0.5f * (free_width < free_height ? free_width : free_height);
+        lao_v2 p = sdv_radial(l->h[i], l->s[i]);
+        return lao_v2_make(0.5f * d->width + reach * p.x, 0.5f * d->height - reach * p.y);
+    }
+    return lao_v2_make(d->width * margin + free_width * l->h[i],
+                       d->height * margin + free_height * (1 - l->s[i]));
+}
+
+static int sdv__svg_edge(const sdv_layout *l, const sdv_svg_desc *d, uint32_t from, uint32_t to,
+                         const char *color, float width, const sdv_writer *writer) {
+    char text[5][SDV__NUMBER];
+    lao_v2 p = sdv__layout_place(l, d, from), q = sdv__layout_place(l, d, to);
+    return sdv__print(writer,
+                      "<line x1=\"%s\" y1=\"%s\" x2=\"%s\" y2=\"%s\" stroke=\"%s\" "
+                      "stroke-width=\"%s\"/>\n",
+                      sdv__number((double)p.x, text[0]), sdv__number((double)p.y, text[1]),
+                      sdv__number((double)q.x, text[2]), sdv__number((double)q.y, text[3]), color,
+                      sdv__number((double)width, text[4]));
+}
+
+SDV_API int sdv_layout_write_svg(const sdv_reduced *reduced, const sdv_layout *layout,
+                                 const sdv_svg_desc *desc, const sdv_writer *writer) {
+    sdv_svg_desc d = {0, 0, 0, 0, NULL, 0};
+    char width[SDV__NUMBER], height[SDV__NUMBER];
+    uint32_t i, round;
+    int stop;
+    d = desc ? *desc : d;
+    d.width = d.width > 0 ? d.width : d.radial ? 768.0f : 1024.0f;
+    d.height = d.height > 0 ? d.height : d.radial ? 768.0f : 512.0f;
+    d.line_width = d.line_width > 0 ? d.line_width : 2.0f;
+    sdv__number((double)d.width, width);
+    sdv__number((double)d.height, height);
+    stop = sdv__print(writer,
+                      "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"%s\" height=\"%s\">\n"
+                      "<rect width=\"%s\" height=\"%s\" fill=\"#303030\"/>\n"
+                      "<g stroke-linecap=\"round\">\n",
+                      width, height, width, height);
+    for (round = d.distances ? 0 : 1; round < 2; round++) { /* marks, then edges over them */
+        for (i = 0; !stop && i < reduced->node_count; i++) {
+            char color[16];
+            lao_v3 c = sdv_hsv(layout->h[i], layout->s[i], 1.0f);
+            int risk = d.distances && d.distances[i] < d.risk;
+            if (reduced->parents[i] == SDV_NONE || (round == 0 && !risk)) {
+                continue;
+            }
+            snprintf(color, sizeof color, "#%02x%02x%02x", (unsigned)(c.x * 255.0f + 0.5f),
+                     (unsigned)(c.y * 255.0f + 0.5f), (unsigned)(c.z * 255.0f + 0.5f));
+            stop = sdv__svg_edge(layout, &d, reduced->parents[i], i, round ? color : "#c03028",
+                                 round ? d.line_width : 4 * d.line_width, writer);
+        }
+    }
+    return stop ? stop : sdv__print(writer, "</g>\n</svg>\n");
+}
+
+/* ================================================================================================
+ * jobs */
+
+/* A piece of work in phases, for progress. */
+typedef struct sdv__work {
+    const sdv_host *host;
+    uint64_t done, total; /* items of all phases */
+} sdv__work;
+
+typedef struct sdv__batch {
+    void (*fn)(void *arg, uint32_t index);
+    void *arg;
+    uint32_t first;
+} sdv__batch;
+
+static void sdv__run_item(void *arg, uint32_t index) {
+    const sdv__batch *b = (const sdv__batch *)arg;
+    b->fn(b->arg, b->first + index);
+}
+
+/* fn(arg, 0 .. count - 1), as the host likes; progress after every 16. Non-zero: cancelled. */
+static int sdv__run(sdv__work *work, uint32_t count, void (*fn)(void *arg, uint32_t index),
+                    void *arg) {
+    const lao_job *job = work->host ? &work->host->job : NULL;
+    uint32_t first, i;
+    for (first = 0; first < count; first += 16) {
+        uint32_t n = count - first < 16 ? count - first : 16;
+        sdv__batch batch;
+        batch.fn = fn;
+        batch.arg = arg;
+        batch.first = first;
+        if (job && job->run) {
+            job->run(job->user, n, sdv__run_item, &batch);
+        } else {
+            for (i = 0; i < n; i++) {
+                fn(arg, first + i);
+            }
+        }
+        work->done += n;
+        if (job && job->progress && job->progress(job->user, work->done, work->total)) {
+            return 1;
+        }
+    }
+    return 0;
+}
+
+/* ================================================================================================
+ * grid */
+
+enum { SDV__AXIS = 512 };    /* most cells along an axis */
+#define SDV__EXACT 16777216u /* floats count to here */
+
+static sdv_box sdv__grid_box(const sdv_grid *g) {
+    sdv_box box;
+    box.origin = g->origin;
+    box.cell = g->cell;
+    box.size = lao_v3_make((float)g->size[0], (float)g->size[1], (float)g->size[2]);
+    return box;
+}
+static size_t sdv__row(const sdv_grid *g, uint32_t y, uint32_t z) {
+    return (size_t)g->size[0] * (y + (size_t)g->size[1] * z);
+}
+static size_t sdv__layer_size(const sdv_grid *g) {
+    return (size_t)g->size[0] * g->size[1];
+}
+
+/* ---- the box */
+static void sdv__ball_bounds(const lao_v4 *balls, uint32_t count, double low[3], double high[3]) {
+    uint32_t i, k;
+    for (i = 0; i < count; i++) {
+        const float *p = &balls[i].x;
+        for (k = 0; k < 3; k++) {
+            double a = (double)p[k] - (double)balls[i].w, b = (double)p[k] + (double)balls[i].w;
+            low[k] = i == 0 || a < low[k] ? a : low[k];
+            high[k] = i == 0 || b > high[k] ? b : high[k];
+        }
+    }
+}
+/* Cubic cells around all balls, and two more at every side. */
+static int sdv__grid_fit(const sdv_tree *tree, uint32_t resolution, sdv_grid *g) {
+    double low[3], high[3], most = 0;
+    float *origin = &g->origin.x;
+    uint32_t k;
+    if (resolution < 16 || resolution > SDV__AXIS) {
+        return 0;
+    }
+    sdv__ball_bounds(tree->nodes, tree->node_count, low, high);
+    for (k = 0; k < 3; k++) {
+        most = high[k] - low[k] > most ? high[k] - low[k] : most;
+    }
+    g->cell = most > 0 ? (float)(most / (double)(resolution - 4) * (1 + 1e-6)) : 1.0f;
+    g->cell = g->cell > 0.0f ? g->cell : 1.0f;
+    for (k = 0; k < 3; k++) {
+        g->size[k] = (uint32_t)ceil((high[k] - low[k]) / (double)g->cell) + 4;
+        origin[k] = (float)(0.5 * (low[k] + high[k]) - 0.5 * (double)g->size[k] * (double)g->cell);
+    }
+    return 1;
+}
+static int sdv__grid_frame(const sdv_tree *tree, const sdv_grid_desc *desc, sdv_grid *g) {
+    uint32_t k;
+    double cells = 1;
+    if (desc->origin) {
+        g->origin = lao_v3_make(desc->origin[0], desc->origin[1], desc->origin[2]);
+        g->cell = desc->cell;
+        memcpy(g->size, desc->size, sizeof g->size);
+    } else if (!sdv__grid_fit(tree, desc->resolution ? desc->resolution : 128, g)) {
+        return 0;
+    }
+    for (k = 0; k < 3; k++) {
+        cells *= (double)g->size[k];
+        if (g->size[k] < 1 || g->size[k] > SDV__AXIS) {
+            return 0;
+        }
+    }
+    if (!(cells <= SDV__EXACT && g->cell > 0.0f && g->cell < 1e30f)) {
+        return 0;
+    }
+    g->cell_count = (uint32_t)cells;
+    return 1;
+}
+/* Are all balls inside the box? */
+static int sdv__grid_holds(const sdv_grid *g, const sdv_tree *tree) {
+    double low[3], high[3];
+    const float *origin = &g->origin.x;
+    uint32_t k;
+    sdv__ball_bounds(tree->nodes, tree->node_count, low, high);
+    for (k = 0; k < 3; k++) {
+        double end = (double)origin[k] + (double)g->size[k] * (double)g->cell;
+        if (!(low[k] >= (double)origin[k] && high[k] <= end)) {
+            return 0;
+        }
+    }
+    return 1;
+}
+
+/* ---- cones */
+static int sdv__is_lone(const sdv_tree *tree, uint32_t node) {
+    return tree->parents[node] == SDV_NONE && tree->child_counts[node] == 0;
+}
+static uint32_t sdv__lone_count(const sdv_tree *tree) {
+    uint32_t i, n = 0;
+    for (i = 0; i < tree->node_count; i++) {
+        n += (uint32_t)sdv__is_lone(tree, i);
+    }
+    return n;
+}
+static void sdv__cone_set(const sdv_tree *tree, const uint32_t *nodes, lao_v4 *cone) {
+    cone[0] = tree->nodes[nodes[0]];
+    cone[1] = tree->nodes[nodes[1]];
+}
+static void sdv__cones_fill(const sdv_tree *tree, sdv_grid *g) {
+    uint32_t i, n = tree->segment_count;
+    for (i = 0; i < n; i++) {
+        g->cone_nodes[2 * (size_t)i] = tree->segments[i].parent;
+        g->cone_nodes[2 * (size_t)i + 1] = tree->segments[i].child;
+    }
+    for (i = 0; i < tree->node_count; i++) {
+        if (sdv__is_lone(tree, i)) {
+            g->cone_nodes[2 * (size_t)n] = i;
+            g->cone_nodes[2 * (size_t)n + 1] = i;
+            n++;
+        }
+    }
+    for (i = 0; i < n; i++) {
+        sdv__cone_set(tree, g->cone_nodes + 2 * (size_t)i, g->cones + 2 * (size_t)i);
+    }
+}
+
+/* ---- which cells a cone may be listed in: plane by plane, row by row. The balls of a cone have
+   centre a + t (b - a) and radius ra + t (rb - ra); those that reach a plane across an axis have t
+   in an interval. */
+typedef struct sdv__raster {
+    double a[3], b[3], ra, rb; /* radii with the reach of lists and a margin for rounding */
+} sdv__raster;
+
+static sdv__raster sdv__raster_make(const sdv_grid *g, const lao_v4 *cone) {
+    sdv__raster r;
+    const float *a = &cone[0].x, *b = &cone[1].x, *o = &g->origin.x;
+    double reach = (double)sdv_list_reach(g->cell) + 0.02 * (double)g->cell;
+    int k;
+    for (k = 0; k < 3; k++) {
+        reach += 1e-6 * (fabs((double)a[k]) + fabs((double)b[k]) + fabs((double)o[k]));
+        r.a[k] = (double)a[k];
+        r.b[k] = (double)b[k];
+    }
+    r.ra = (double)cone[0].w * (1 + 1e-6) + reach;
+    r.rb = (double)cone[1].w * (1 + 1e-6) + reach;
+    return r;
+}
+/* Narrows t to the balls that reach the plane `at` across an axis; 0: none. */
+static int sdv__raster_cut(const sdv__raster *r, int axis, double at, double t[2]) {
+    double d = r->b[axis] - r->a[axis], dr = r->rb - r->ra, from = r->a[axis] - at;
+    double slope[2], value[2];
+    int i;
+    slope[0] = d - dr; /* centre - at <= radius */
+    value[0] = r->ra - from;
+    slope[1] = -d - dr; /* at - centre <= radius */
+    value[1] = r->ra + from;
+    for (i = 0; i < 2; i++) {
+        double limit = value[i] / slope[i];
+        if (slope[i] > 0) {
+            t[1] = limit < t[1] ? limit : t[1];
+        } else if (slope[i] < 0) {
+            t[0] = limit > t[0] ? limit : t[0];
+        } else if (value[i] < 0) {
+            return 0;
+        }
+    }
+    return t[0] <= t[1];
+}
+/* Cells of an axis that the balls of t may reach: range[0] .. range[1] - 1. */
+static void sdv__raster_range(const sdv_grid *g, const sdv__raster *r, int axis, const double t[2],
+                              uint32_t range[2]) {
+    double low = 0, high = 0, origin = (double)(&g->origin.x)[axis], n = (double)g->size[axis];
+    int i;
+    for (i = 0; i < 2; i++) {
+        double c = r->a[axis] + t[i] * (r->b[axis] - r->a[axis]);
+        double radius = r->ra + t[i] * (r->rb - r->ra);
+        low = i == 0 || c - radius < low ? c - radius : low;
+        high = i == 0 || c + radius > high ? c + radius : high;
+    }
+    low = ceil((low - origin) / (double)g->cell - 0.5); /* centres within */
+    high = floor((high - origin) / (double)g->cell - 0.5) + 1;
+    range[0] = low > 0 ? (low < n ? (uint32_t)low : g->size[axis]) : 0;
+    range[1] = high > 0 ? (high < n ? (uint32_t)high : g->size[axis]) : 0;
+}
+static double sdv__plane(const sdv_grid *g, int axis, uint32_t i) {
+    return (double)(&g->origin.x)[axis] + ((double)i + 0.5) * (double)g->cell;
+}
+/* Calls visit(arg, cell, centre) for every cell of layer z that the cone may be listed in. */
+typedef void (*sdv__visitor)(void *arg, uint32_t cell, lao_v3 centre);
+static void sdv__raster_layer(const sdv_grid *g, const lao_v4 *cone, uint32_t z, sdv__visitor visit,
+                              void *arg) {
+    sdv__raster r = sdv__raster_make(g, cone);
+    sdv_box box = sdv__grid_box(g);
+    double t[2] = {0, 1};
+    uint32_t rows[2], y, x;
+    if (!sdv__raster_cut(&r, 2, sdv__plane(g, 2, z), t)) {
+        return;
+    }
+    sdv__raster_range(g, &r, 1, t, rows);
+    for (y = rows[0]; y < rows[1]; y++) {
+        double u[2];
+        uint32_t columns[2];
+        u[0] = t[0];
+        u[1] = t[1];
+        if (!sdv__raster_cut(&r, 1, sdv__plane(g, 1, y), u)) {
+            continue;
+        }
+        sdv__raster_range(g, &r, 0, u, columns);
+        for (x = columns[0]; x < columns[1]; x++) {
+            visit(arg, (uint32_t)sdv__row(g, y, z) + x, sdv_cell_centre(box, x, y, z));
+        }
+    }
+}
+static void sdv__raster_layers(const sdv_grid *g, const lao_v4 *cone, uint32_t range[2]) {
+    sdv__raster r = sdv__raster_make(g, cone);
+    const double t[2] = {0, 1};
+    sdv__raster_range(g, &r, 2, t, range);
+}
+static int sdv__is_listed(const sdv_grid *g, lao_v3 centre, const lao_v4 *cone) {
+    return sdv_round_cone(centre, cone[0], cone[1]) <= sdv_list_reach(g->cell);
+}
+
+/* ---- lists: counted, then filled, layer by layer; cones come in ascending order */
+typedef struct sdv__fill {
+    sdv_grid *grid;
+    const uint32_t *first, *binned; /* cones of each layer, ascending */
+    uint64_t *layer_ids;            /* entries of each layer; later where they begin */
+    uint32_t cone;
+} sdv__fill;
+
+static void sdv__count_cell(void *arg, uint32_t cell, lao_v3 centre) {
+    sdv__fill *f = (sdv__fill *)arg;
+    sdv_grid *g = f->grid;
+    if (sdv__is_listed(g, centre, g->cones + 2 * (size_t)f->cone)) {
+        g->cells[cell].w += 1.0f;
+    }
+}
+static void sdv__fill_cell(void *arg, uint32_t cell, lao_v3 centre) {
+    sdv__fill *f = (sdv__fill *)arg;
+    sdv_grid *g = f->grid;
+    if (sdv__is_listed(g, centre, g->cones + 2 * (size_t)f->cone)) {
+        lao_v4 *c = g->cells + cell;
+        g->ids[(size_t)c->z + (size_t)c->x] = (float)f->cone;
+        c->x += 1.0f;
+    }
+}
+static void sdv__raster_binned(const sdv__fill *f, uint32_t z, sdv__visitor visit) {
+    sdv__fill own = *f;
+    uint32_t i;
+    for (i = f->first[z]; i < f->first[z + 1]; i++) {
+        own.cone = f->binned[i];
+        sdv__raster_layer(own.grid, own.grid->cones + 2 * (size_t)own.cone, z, visit, &own);
+    }
+}
+static void sdv__count_layer(void *arg, uint32_t z) {
+    sdv__fill *f = (sdv__fill *)arg;
+    lao_v4 *cells = f->grid->cells + sdv__row(f->grid, 0, z);
+    size_t i, n = sdv__layer_size(f->grid);
+    uint64_t sum = 0;
+    memset(cells, 0, n * sizeof *cells);
+    sdv__raster_binned(f, z, sdv__count_cell);
+    for (i = 0; i < n; i++) {
+        sum += (uint32_t)cells[i].w;
+    }
+    f->layer_ids[z] = sum;
+}
+
+/* ---- nearest occupied cells: exact, separable, ties to the lowest index (METHODS 5.2) */
+/* Lower envelope of parabolas apart[u] + (x - u)^2 in integers (Meijster 2000): ties to the lower
+   u. apart < 0: no parabola. */
+typedef struct sdv__envelope {
+    int32_t place[SDV__AXIS], until[SDV__AXIS]; /* winners and the last x where they win */
+    int32_t count;
+} sdv__envelope;
+static void sdv__envelope_make(sdv__envelope *e, const int32_t *apart, int32_t n) {
+    int32_t u;
+    e->count = 0;
+    for (u = 0; u < n; u++) {
+        int32_t until = -1;
+        if (apart[u] < 0) {
+            continue;
+        }
+        while (e->count > 0) { /* up to where does the last winner win against u? */
+            int32_t i = e->place[e->count - 1];
+            int32_t start = e->count > 1 ? e->until[e->count - 2] + 1 : 0;
+            int32_t top = u * u - i * i + apart[u] - apart[i], bottom = 2 * (u - i);
+            until = top >= 0 ? top / bottom : -((-top + bottom - 1) / bottom);
+            if (until >= start) {
+                break;
+            }
+            e->count--;
+        }
+        if (e->count > 0 && until >= n - 1) {
+            continue;
+        }
+        if (e->count > 0) {
+            e->until[e->count - 1] = until;
+        }
+        e->place[e->count] = u;
+        e->until[e->count++] = n - 1;
+    }
+}
+
+/* The nearest occupied x of each row of a layer; SDV_NONE: none. */
+static void sdv__layer_rows(const sdv_grid *g, uint32_t z, uint32_t *out) {
+    uint32_t x, y, nx = g->size[0];
+    for (y = 0; y < g->size[1]; y++) {
+        const lao_v4 *cells = g->cells + sdv__row(g, y, z);
+        uint32_t *row = out + (size_t)nx * y, last = SDV_NONE;
+        for (x = 0; x < nx; x++) {
+            last = cells[x].w > 0.0f ? x : last;
+            row[x] = last;
+        }
+        last = SDV_NONE;
+        for (x = nx; x-- > 0;) { /* the one behind wins only when it is nearer */
+            last = cells[x].w > 0.0f ? x : last;
+            if (last != SDV_NONE && (row[x] == SDV_NONE || last - x < x - row[x])) {
+                row[x] = last;
+            }
+        }
+    }
+}
+/* From there x + 65536 y of the nearest occupied cell of the layer. */
+static void sdv__layer_columns(const sdv_grid *g, uint32_t *out) {
+    uint32_t x, y, nx = g->size[0], ny = g->size[1];
+    for (x = 0; x < nx; x++) {
+        int32_t apart[SDV__AXIS], k = 0;
+        uint32_t best[SDV__AXIS];
+        sdv__envelope e;
+        for (y = 0; y < ny; y++) {
+            int32_t d = (int32_t)out[(size_t)nx * y + x] - (int32_t)x;
+            best[y] = out[(size_t)nx * y + x];
+            apart[y] = best[y] == SDV_NONE ? -1 : d * d;
+        }
+        sdv__envelope_make(&e, apart, (int32_t)ny);
+        for (y = 0; y < ny && e.count > 0; y++) {
+            k += (int32_t)y > e.until[k];
+            out[(size_t)nx * y + x] = best[e.place[k]] + 65536 * (uint32_t)e.place[k];
+        }
+    }
+}
+static void sdv__fill_layer(void *arg, uint32_t z) {
+    sdv__fill *f = (sdv__fill *)arg;
+    sdv_grid *g = f->grid;
+    size_t i, first = sdv__row(g, 0, z), n = sdv__layer_size(g);
+    uint64_t at = f->layer_ids[z];
+    for (i = first; i < first + n; i++) {
+        g->cells[i].z = (float)at;
+        at += (uint32_t)g->cells[i].w;
+    }
+    sdv__raster_binned(f, z, sdv__fill_cell);
+    sdv__layer_rows(g, z, g->layer + first);
+    sdv__layer_columns(g, g->layer + first);
+}
+
+/* The nearest occupied cell of a cell, `apart2` cells squared away. `stale` (Optional): gets bit 2
+   where that is news. */
+static void sdv__nearest_write(sdv_grid *g, size_t cell, size_t nearest, int32_t apart2,
+                               unsigned char *stale) {
+    lao_v4 *c = g->cells + cell;
+    if (stale) {
+        if (c->y == (float)nearest) {
+            return;
+        }
+        stale[cell] |= 2;
+    }
+    c->y = (float)nearest;
+    if (!(c->w > 0.0f)) {
+        c->z = sdv_far_step(lao_sqrt((float)apart2) * g->cell, g->cell);
+    }
+}
+/* Columns along z at one y, 16 at a time: the nearest of all layers' nearest. `wanted` (Optional):
+   the x that need it. */
+enum { SDV__WIDE = 16 };
+static void sdv__column(sdv_grid *g, uint32_t x, uint32_t y, const uint32_t *best,
+                        unsigned char *stale) {
+    int32_t apart[SDV__AXIS], k = 0;
+    sdv__envelope e;
+    uint32_t z, nz = g->size[2];
+    for (z = 0; z < nz; z++) {
+        uint32_t cell = best[z * SDV__WIDE];
+        int32_t dx = (int32_t)(cell & 65535u) - (int32_t)x;
+        int32_t dy = (int32_t)(cell >> 16) - (int32_t)y;
+        apart[z] = cell == SDV_NONE ? -1 : dx * dx + dy * dy;
+    }
+    sdv__envelope_make(&e, apart, (int32_t)nz);
+    for (z = 0; z < nz && e.count > 0; z++) {
+        int32_t winner, dz;
+        uint32_t cell;
+        k += (int32_t)z > e.until[k];
+        winner = e.place[k];
+        dz = winner - (int32_t)z;
+        cell = best[winner * SDV__WIDE];
+        sdv__nearest_write(g, sdv__row(g, y, z) + x,
+                           sdv__row(g, cell >> 16, (uint32_t)winner) + (cell & 65535u),
+                           apart[winner] + dz * dz, stale);
+    }
+}
+static void sdv__columns(sdv_grid *g, uint32_t y, const unsigned char *wanted,
+                         unsigned char *stale) {
+    uint32_t best[SDV__AXIS * SDV__WIDE], x0, x, z, nx = g->size[0];
+    for (x0 = 0; x0 < nx; x0 += SDV__WIDE) {
+        uint32_t wide = nx - x0 < SDV__WIDE ? nx - x0 : (uint32_t)SDV__WIDE;
+        if (wanted && !memchr(wanted + x0, 1, wide)) {
+            continue;
+        }
+        for (z = 0; z < g->size[2]; z++) {
+            memcpy(best + z * SDV__WIDE, g->layer + sdv__row(g, y, z) + x0, wide * sizeof *best);
+        }
+        for (x = x0; x < x0 + wide; x++) {
+            if (!wanted || wanted[x]) {
+                sdv__column(g, x, y, best + (x - x0), stale);
+            }
+        }
+    }
+}
+static void sdv__column_slab(void *arg, uint32_t y) {
+    sdv__columns(((sdv__fill *)arg)->grid, y, NULL, NULL);
+}
+
+/* ---- distances */
+/* Of p to the cones of a cell's list. */
+static float sdv__list_distance(const sdv_grid *g, const lao_v4 *cell, lao_v3 p, uint32_t *cone) {
+    const float *ids = g->ids + (size_t)cell->z;
+    uint32_t i, n = (uint32_t)cell->w;
+    float least = SDV_FAR;
+    for (i = 0; i < n; i++) {
+        const lao_v4 *c = g->cones + 2 * (size_t)ids[i];
+        float d = sdv_round_cone(p, c[0], c[1]);
+        if (d < least) {
+            least = d;
+            *cone = (uint32_t)ids[i];
+        }
+    }
+    return least;
+}
+/* Of the cells' centres to the list of their nearest occupied cell. `stale` (Optional): which cells
+   need it: those with bit 2, and those nearest to one with bit 1. */
+static void sdv__refine_layer(const sdv_grid *g, uint32_t z, const unsigned char *stale) {
+    sdv_box box = sdv__grid_box(g);
+    uint32_t x, y, cone;
+    for (y = 0; y < g->size[1]; y++) {
+        size_t row = sdv__row(g, y, z);
+        for (x = 0; x < g->size[0]; x++) {
+            lao_v4 *c = g->cells + row + x;
+            size_t nearest = (size_t)c->y;
+            if (!stale || (stale[row + x] & 2) || (stale[nearest] & 1)) {
+                c->x =
+                    sdv__list_distance(g, g->cells + nearest, sdv_cell_centre(box, x, y, z), &cone);
+            }
+        }
+    }
+}
+static void sdv__refine_slab(void *arg, uint32_t z) {
+    sdv__refine_layer(((sdv__fill *)arg)->grid, z, NULL);
+}
+
+/* ---- building */
+/* Cones of each layer, ascending. NULL: no memory. `first` has size[2] + 1 entries. */
+static uint32_t *sdv__bin_cones(const sdv_grid *g, uint32_t *first) {
+    uint32_t i, z, range[2], *binned;
+    uint64_t sum = 0;
+    memset(first, 0, (g->size[2] + 1) * sizeof *first);
+    for (i = 0; i < g->cone_count; i++) {
+        sdv__raster_layers(g, g->cones + 2 * (size_t)i, range);
+        for (z = range[0]; z < range[1]; z++) {
+            first[z]++;
+        }
+    }
+    for (z = 0; z <= g->size[2]; z++) {
+        uint32_t n = first[z];
+        first[z] = (uint32_t)sum;
+        sum += n;
+    }
+    binned = sum < SDV_NONE ? (uint32_t *)sdv__take(&g->allocator, sum, sizeof *binned) : NULL;
+    for (i = 0; binned && i < g->cone_count; i++) {
+        sdv__raster_layers(g, g->cones + 2 * (size_t)i, range);
+        for (z = range[0]; z < range[1]; z++) { /* first = the next free place, */
+            binned[first[z]++] = i;
+        }
+    }
+    for (z = g->size[2]; binned && z > 0; z--) { /* and back */
+        first[z] = first[z - 1];
+    }
+    first[0] = 0;
+    return binned;
+}
+
+/* Entries of the layers to where they begin; returns the sum. */
+static uint64_t sdv__layer_starts(const sdv_grid *g, uint64_t *layer_ids) {
+    uint64_t sum = 0;
+    uint32_t z;
+    for (z = 0; z < g->size[2]; z++) {
+        uint64_t n = layer_ids[z];
+        layer_ids[z] = sum;
+        sum += n;
+    }
+    return sum;
+}
+
+/* Fills the cells of a grid whose box, cones and memory are there. */
+static lao_result sdv__grid_fill(sdv__work *work, sdv_grid *g, uint32_t *first,
+                                 uint64_t *layer_ids) {
+    const sdv_host *host = work->host;
+    uint32_t *binned = sdv__bin_cones(g, first);
+    uint64_t sum = 0;
+    int cancelled;
+    sdv__fill f;
+    if (!binned) {
+        return sdv__fail(host, SDV_LOG_MEMORY, "the cones of a grid's layers");
+    }
+    f.grid = g;
+    f.first = first;
+    f.binned = binned;
+    f.layer_ids = layer_ids;
+    f.cone = 0;
+    cancelled = sdv__run(work, g->size[2], sdv__count_layer, &f);
+    if (!cancelled) {
+        sum = sdv__layer_starts(g, layer_ids);
+        g->id_count = (uint32_t)sum;
+        g->ids = sum <= SDV__EXACT ? (float *)sdv__take(&g->allocator, sum, sizeof *g->ids) : NULL;
+    }
+    if (g->ids) {
+        cancelled = sdv__run(work, g->size[2], sdv__fill_layer, &f) ||
+                    sdv__run(work, g->size[1], sdv__column_slab, &f) ||
+                    sdv__run(work, g->size[2], sdv__refine_slab, &f);
+    }
+    sdv__give(&g->allocator, binned);
+    if (cancelled) {
+        return sdv__fail(host, SDV_LOG_CANCELLED, "building a grid");
+    }
+    if (sum > SDV__EXACT) {
+        return sdv__fail(host, SDV_LOG_GRID_LISTS, "%llu entries", (unsigned long long)sum);
+    }
+    return g->ids ? LAO_OK
+                  : sdv__fail(host, SDV_LOG_MEMORY, "a grid's %u list entries", g->id_count);
+}
+
+SDV_API lao_result sdv_grid_build(const sdv_host *host, const sdv_tree *tree,
+                                  const sdv_grid_desc *desc, sdv_grid *grid) {
+    sdv_grid_desc standard;
+    sdv_grid g;
+    sdv__work work;
+    uint32_t *first;
+    uint64_t *layer_ids;
+    lao_result result;
+    memset(&standard, 0, sizeof standard);
+    memset(&g, 0, sizeof g);
+    if (!tree || !grid || !tree->memory) {
+        return sdv__fail(host, SDV_LOG_NULL_ARGUMENT, "sdv_grid_build");
+    }
+    g.cone_count = tree->segment_count + sdv__lone_count(tree);
+    if (g.cone_count > SDV__EXACT) {
+        return sdv__fail(host, SDV_LOG_GRID_LISTS, "%u segments", g.cone_count);
+    }
+    if (!sdv__grid_frame(tree, desc ? desc : &standard, &g)) {
+        return sdv__fail(host, SDV_LOG_GRID_CELLS, "%u x %u x %u", g.size[0], g.size[1], g.size[2]);
+    }
+    g.allocator = sdv__allocator(host);
+    g.cells = (lao_v4 *)sdv__take(&g.allocator, g.cell_count, sizeof *g.cells);
+    g.layer = (uint32_t *)sdv__take(&g.allocator, g.cell_count, sizeof *g.layer);
+    g.cones = (lao_v4 *)sdv__take(&g.allocator, 2 * (uint64_t)g.cone_count, sizeof *g.cones);
+    g.cone_nodes =
+        (uint32_t *)sdv__take(&g.allocator, 2 * (uint64_t)g.cone_count, sizeof *g.cone_nodes);
+    first = (uint32_t *)sdv__take(&g.allocator, SDV__AXIS + 1, sizeof *first);
+    layer_ids = (uint64_t *)sdv__take(&g.allocator, SDV__AXIS, sizeof *layer_ids);
+    if (g.cells && g.layer && g.cones && g.cone_nodes && first && layer_ids) {
+        work.host = host;
+        work.done = 0;
+        work.total = 3 * (uint64_t)g.size[2] + g.size[1];
+        sdv__cones_fill(tree, &g);
+        result = sdv__grid_fill(&work, &g, first, layer_ids);
+    } else {
+        result = sdv__fail(host, SDV_LOG_MEMORY, "a grid of %u cells and %u cones", g.cell_count,
+                           g.cone_count);
+    }
+    sdv__give(&g.allocator, first);
+    sdv__give(&g.allocator, layer_ids);
+    if (result != LAO_OK) {
+        sdv_grid_free(&g);
+        return result;
+    }
+    *grid = g;
+    return LAO_OK;
+}
+
+SDV_API void sdv_grid_free(sdv_grid *grid) {
+    if (grid && grid->allocator.release) {
+        sdv__give(&grid->allocator, grid->cells);
+        sdv__give(&grid->allocator, grid->layer);
+        sdv__give(&grid->allocator, grid->ids);
+        sdv__give(&grid->allocator, grid->cones);
+        sdv__give(&grid->allocator, grid->cone_nodes);
+        memset(grid, 0, sizeof *grid);
+    }
+}
+
+/* ---- changing */
+/* Cells whose list may change are marked, then all lists are copied into a new array with the
+   changed ones merged in; what is nearest is found anew in the layers whose occupied cells changed,
+   and in the columns along z where that changed anything. */
+typedef struct sdv__change {
+    sdv_grid *grid;
+    uint32_t *changed; /* cones, ascending */
+    lao_v4 *cones;     /* their new ends, 2 each */
+    uint32_t changed_count;
+    unsigned char *stale;              /* per cell: 1: its list may change, 2: another is nearest */
+    unsigned char touched[SDV__AXIS];  /* per layer: it has cells with bit 1 */
+    unsigned char turned[SDV__AXIS];   /* per layer: its occupied cells changed */
+    uint32_t scratch_layer[SDV__AXIS]; /* per layer: place in scratch */
+    uint64_t layer_ids[SDV__AXIS];
+    uint32_t *scratch; /* new `layer` values of touched layers */
+    float *ids;
+} sdv__change;
+
+static void sdv__mark_cell(void *arg, uint32_t cell, lao_v3 centre) {
+    (void)centre;
+    ((unsigned char *)arg)[cell] = 1;
+}
+/* The new list of a marked cell: the old one without changed cones, and the changed ones that are
+   near enough, in order. Returns its length; `out` NULL: only that. */
+static uint32_t sdv__merge_list(const sdv__change *c, const lao_v4 *cell, lao_v3 centre,
+                                float *out) {
+    const sdv_grid *g = c->grid;
+    uint32_t i = 0, k = 0, n = 0, old_count = (uint32_t)cell->w;
+    const float *old = old_count ? g->ids + (size_t)cell->z : NULL;
+    while (i < old_count || k < c->changed_count) {
+        uint32_t a = i < old_count ? (uint32_t)old[i] : SDV_NONE;
+        uint32_t b = k < c->changed_count ? c->changed[k] : SDV_NONE;
+        if (b > a || sdv__is_listed(g, centre, c->cones + 2 * (size_t)k)) {
+            if (out) {
+                out[n] = (float)(b > a ? a : b);
+            }
+            n++;
+        }
+        i += a <= b;
+        k += b <= a;
+    }
+    return n;
+}
+static void sdv__mark_layer(void *arg, uint32_t z) {
+    sdv__change *c = (sdv__change *)arg;
+    const sdv_grid *g = c->grid;
+    sdv_box box = sdv__grid_box(g);
+    size_t n = sdv__layer_size(g), first = sdv__row(g, 0, z), i;
+    uint64_t sum = 0;
+    uint32_t k;
+    memset(c->stale + first, 0, n);
+    for (k = 0; k < c->changed_count; k++) {
+        sdv__raster_layer(g, g->cones + 2 * (size_t)c->changed[k], z, sdv__mark_cell, c->stale);
+        sdv__raster_layer(g, c->cones + 2 * (size_t)k, z, sdv__mark_cell, c->stale);
+    }
+    c->touched[z] = memchr(c->stale + first, 1, n) != NULL;
+    for (i = 0; i < n; i++) {
+        const lao_v4 *cell = g->cells + first + i;
+        if (c->stale[first + i]) {
+            uint32_t x = (uint32_t)(i % g->size[0]), y = (uint32_t)(i / g->size[0]);
+            sum += sdv__merge_list(c, cell, sdv_cell_centre(box, x, y, z), NULL);
+        } else {
+            sum += (uint32_t)cell->w;
+        }
+    }
+    c->layer_ids[z] = sum;
+}
+static void sdv__relist_layer(void *arg, uint32_t z) {
+    sdv__change *c = (sdv__change *)arg;
+    sdv_grid *g = c->grid;
+    sdv_box box = sdv__grid_box(g);
+    size_t n = sdv__layer_size(g), first = sdv__row(g, 0, z), at = (size_t)c->layer_ids[z], i;
+    for (i = 0; i < n; i++) {
+        lao_v4 *cell = g->cells + first + i;
+        uint32_t count = (uint32_t)cell->w;
+        if (c->stale[first + i]) {
+            uint32_t x = (uint32_t)(i % g->size[0]), y = (uint32_t)(i / g->size[0]);
+            count = sdv__merge_list(c, cell, sdv_cell_centre(box, x, y, z), c->ids + at);
+            c->turned[z] |= (count > 0) != (cell->w > 0.0f);
+            cell->w = (float)count;
+        } else if (count > 0) {
+            memcpy(c->ids + at, g->ids + (size_t)cell->z, count * sizeof *c->ids);
+        }
+        if (count > 0) {
+            cell->z = (float)at;
+        }
+        at += count;
+    }
+}
+static void sdv__renear_layer(void *arg, uint32_t z) {
+    sdv__change *c = (sdv__change *)arg;
+    if (c->turned[z]) {
+        uint32_t *out = c->scratch + sdv__layer_size(c->grid) * c->scratch_layer[z];
+        sdv__layer_rows(c->grid, z, out);
+        sdv__layer_columns(c->grid, out);
+    }
+}
+static void sdv__renear_slab(void *arg, uint32_t y) {
+    sdv__change *c = (sdv__change *)arg;
+    sdv_grid *g = c->grid;
+    unsigned char wanted[SDV__AXIS];
+    uint32_t x, z;
+    memset(wanted, 0, sizeof wanted);
+    for (z = 0; z < g->size[2]; z++) {
+        uint32_t *row = g->layer + sdv__row(g, y, z);
+        const uint32_t *fresh = c->scratch + sdv__layer_size(g) * c->scratch_layer[z];
+        for (x = 0; c->turned[z] && x < g->size[0]; x++) {
+            uint32_t value = fresh[(size_t)g->size[0] * y + x];
+            wanted[x] |= row[x] != value;
+            row[x] = value;
+        }
+    }
+    sdv__columns(g, y, wanted, c->stale);
+}
+static void sdv__rerefine_layer(void *arg, uint32_t z) {
+    const sdv__change *c = (const sdv__change *)arg;
+    sdv__refine_layer(c->grid, z, c->stale);
+}
+
+/* The cones at the nodes, with their new ends. 0: no memory. */
+static int sdv__changed_cones(const sdv_tree *tree, const uint32_t *nodes, uint32_t count,
+                              sdv__change *c) {
+    const sdv_grid *g = c->grid;
+    const lao_allocator *a = &g->allocator;
+    unsigned char *moved = (unsigned char *)sdv__take(a, tree->node_count, 1);
+    uint32_t i, n = 0;
+    if (!moved) {
+        return 0;
+    }
+    memset(moved, 0, tree->node_count);
+    for (i = 0; i < count; i++) {
+        moved[nodes[i]] = 1;
+    }
+    for (i = 0; i < g->cone_count; i++) {
+        const uint32_t *ends = g->cone_nodes + 2 * (size_t)i;
+        c->changed_count += moved[ends[0]] || moved[ends[1]];
+    }
+    c->changed = (uint32_t *)sdv__take(a, c->changed_count, sizeof *c->changed);
+    c->cones = (lao_v4 *)sdv__take(a, 2 * (uint64_t)c->changed_count, sizeof *c->cones);
+    for (i = 0; c->changed && c->cones && i < g->cone_count; i++) {
+        const uint32_t *ends = g->cone_nodes + 2 * (size_t)i;
+        if (moved[ends[0]] || moved[ends[1]]) {
+            c->changed[n] = i;
+            sdv__cone_set(tree, ends, c->cones + 2 * (size_t)n++);
+        }
+    }
+    sdv__give(a, moved);
+    return c->changed && c->cones;
+}
+
+/* Everything up to the point where nothing can fail any more. */
+static lao_result sdv__change_prepare(sdv__work *work, sdv__change *c, uint64_t *sum) {
+    sdv_grid *g = c->grid;
+    const lao_allocator *a = &g->allocator;
+    uint32_t z, layers = 0;
+    c->stale = (unsigned char *)sdv__take(a, g->cell_count, 1);
+    if (!c->stale) {
+        return sdv__fail(work->host, SDV_LOG_MEMORY, "changing a grid");
+    }
+    if (sdv__run(work, g->size[2], sdv__mark_layer, c)) {
+        return sdv__fail(work->host, SDV_LOG_CANCELLED, "changing a grid");
+    }
+    *sum = sdv__layer_starts(g, c->layer_ids);
+    for (z = 0; z < g->size[2]; z++) {
+        c->scratch_layer[z] = layers;
+        layers += c->touched[z];
+    }
+    if (*sum > SDV__EXACT) {
+        return sdv__fail(work->host, SDV_LOG_GRID_LISTS, "%llu entries", (unsigned long long)*sum);
+    }
+    c->ids = (float *)sdv__take(a, *sum, sizeof *c->ids);
+    c->scratch = (uint32_t *)sdv__take(a, layers * (uint64_t)sdv__layer_size(g), sizeof(uint32_t));
+    return c->ids && c->scratch ? LAO_OK : sdv__fail(work->host, SDV_LOG_MEMORY, "changing a grid");
+}
+static void sdv__change_apply(sdv__work *work, sdv__change *c) {
+    sdv_grid *g = c->grid;
+    float *old = g->ids;
+    uint32_t k;
+    (void)sdv__run(work, g->size[2], sdv__relist_layer, c);
+    g->ids = c->ids;
+    c->ids = old;
+    for (k = 0; k < c->changed_count; k++) {
+        memcpy(g->cones + 2 * (size_t)c->changed[k], c->cones + 2 * (size_t)k,
+               2 * sizeof *g->cones);
+    }
+    (void)sdv__run(work, g->size[2], sdv__renear_layer, c);
+    (void)sdv__run(work, g->size[1], sdv__renear_slab, c);
+    (void)sdv__run(work, g->size[2], sdv__rerefine_layer, c);
+}
+static lao_result sdv__grid_change(const sdv_host *host, const sdv_tree *tree,
+                                   const uint32_t *nodes, uint32_t count, sdv_grid *grid) {
+    sdv__change c;
+    sdv__work work;
+    sdv_host silent;
+    uint64_t sum = 0;
+    lao_result result = LAO_ERROR_OUT_OF_MEMORY;
+    memset(&c, 0, sizeof c);
+    c.grid = grid;
+    work.host = host;
+    work.done = 0;
+    work.total = 4 * (uint64_t)grid->size[2] + grid->size[1];
+    if (sdv__changed_cones(tree, nodes, count, &c)) {
+        result = sdv__change_prepare(&work, &c, &sum);
+    } else {
+        sdv__fail(host, SDV_LOG_MEMORY, "changing a grid");
+    }
+    if (result == LAO_OK) {
+        if (host) { /* no way back from here: the host is no longer asked whether to cancel */
+            silent = *host;
+            silent.job.progress = NULL;
+            work.host = &silent;
+        }
+        sdv__change_apply(&work, &c);
+        grid->id_count = (uint32_t)sum;
+        grid->rebuilt = 0;
+    }
+    sdv__give(&grid->allocator, c.changed);
+    sdv__give(&grid->allocator, c.cones);
+    sdv__give(&grid->allocator, c.stale);
+    sdv__give(&grid->allocator, c.scratch);
+    sdv__give(&grid->allocator, c.ids);
+    return result;
+}
+
+/* A new grid in place of the old one, with as many cells along its longest axis. */
+static lao_result sdv__grid_renew(const sdv_host *host, const sdv_tree *tree, sdv_grid *grid) {
+    sdv_grid_desc desc;
+    sdv_grid fresh;
+    lao_result result;
+    uint32_t k;
+    memset(&desc, 0, sizeof desc);
+    desc.resolution = 16;
+    for (k = 0; k < 3; k++) {
+        desc.resolution = grid->size[k] > desc.resolution ? grid->size[k] : desc.resolution;
+    }
+    result = sdv_grid_build(host, tree, &desc, &fresh);
+    if (result == LAO_OK) {
+        sdv_grid_free(grid);
+        *grid = fresh;
+        grid->rebuilt = 1;
+    }
+    return result;
+}
+
+SDV_API lao_result sdv_grid_update(const sdv_host *host, const sdv_tree *tree,
+                                   const uint32_t *nodes, uint32_t count, sdv_grid *grid) {
+    uint32_t i;
+    if (!tree || !grid || (count && !nodes) || !tree->memory || !grid->cells) {
+        return sdv__fail(host, SDV_LOG_NULL_ARGUMENT, "sdv_grid_update");
+    }
+    for (i = 0; i < count; i++) {
+        if (nodes[i] >= tree->node_count) {
+            return sdv__fail(host, SDV_LOG_GRID_TREE, "node %u of %u", nodes[i], tree->node_count);
+        }
+    }
+    if (grid->cone_count != tree->segment_count + sdv__lone_count(tree)) {
+        return sdv__fail(host, SDV_LOG_GRID_TREE, NULL);
+    }
+    if (!sdv__grid_holds(grid, tree)) {
+        return sdv__grid_renew(host, tree, grid);
+    }
+    return sdv__grid_change(host, tree, nodes, count, grid);
+}
+
+/* ---- reading */
+SDV_API float sdv_grid_distance(const sdv_grid *grid, lao_v3 p, uint32_t *cone) {
+    const lao_v4 *cell = grid->cells + sdv_cell_at(sdv__grid_box(grid), p);
+    uint32_t nearest = SDV_NONE;
+    float d;
+    cell = cell->w > 0.0f ? cell : grid->cells + (size_t)cell->y;
+    d = sdv__list_distance(grid, cell, p, &nearest);
+    if (cone) {
+        *cone = nearest;
+    }
+    return d;
+}
+SDV_API float sdv_cones_distance(const lao_v4 *cones, uint32_t count, lao_v3 p, uint32_t *cone) {
+    uint32_t i, nearest = SDV_NONE;
+    float least = SDV_FAR;
+    for (i = 0; i < count; i++) {
+        float d = sdv_round_cone(p, cones[2 * (size_t)i], cones[2 * (size_t)i + 1]);
+        if (d < least) {
+            least = d;
+            nearest = i;
+        }
+    }
+    if (cone) {
+        *cone = nearest;
+    }
+    return least;
+}
+
+/* ================================================================================================
+ * tracing: what the shaders do, with the same shared functions */
+
+/* One sample: from the list of the cell at p, or of the nearest cell that has one. */
+static sdv_near sdv__near_at(const sdv_grid *g, const lao_v4 *cell, lao_v3 p, lao_v3 direction) {
+    sdv_near n = sdv_near_start(sdv_near_reach(g->cell));
+    const lao_v4 *from = cell->w > 0.0f ? cell : g->cells + (size_t)cell->y;
+    uint32_t i;
+    for (i = 0; i < (uint32_t)from->w; i++) {
+        float id = g->ids[(size_t)from->z + i];
+        const lao_v4 *cone = g->cones + 2 * (size_t)id;
+        n = sdv_near_add(n, p, direction, cone[0], cone[1], id);
+    }
+    return n;
+}
+static const lao_v4 *sdv__cell_at(const sdv_grid *g, lao_v3 p) {
+    return g->cells + sdv_cell_at(sdv__grid_box(g), p);
+}
+
+/* Refines a local minimum whose sample was nearest to m.cone, with the cones that turn out to be
+   nearest where the ray is nearest to those before. */
+static sdv_march sdv__minimum(const sdv_grid *g, const sdv_ray *ray, sdv_march m, float cone,
+                              float low, float high) {
+    sdv_minimum found = sdv_minimum_start(cone);
+    int i;
+    for (i = 0; i < SDV_MINIMUM_ROUNDS && found.cone >= 0.0f; i++) {
+        const lao_v4 *ends = g->cones + 2 * (size_t)found.cone;
+        lao_v3 p;
+        found = sdv_minimum_add(found, ray->origin, ray->direction, ends[0], ends[1], low, high);
+        p = lao_v3_along(ray->origin, ray->direction, found.t);
+        found = sdv_minimum_next(found, sdv__near_at(g, sdv__cell_at(g, p), p, ray->direction));
+    }
+    return sdv_march_minimum(m, found);
+}
+
+static sdv_march sdv__note(const sdv_grid *g, const sdv_ray *ray, sdv_march m, sdv_near n) {
+    if (n.cone >= 0.0f) {
+        const lao_v4 *ends = g->cones + 2 * (size_t)n.cone;
+        m = sdv_march_note(m, sdv_minimum_add(sdv_minimum_start(n.cone), ray->origin,
+                                              ray->direction, ends[0], ends[1], 0.0f, SDV_FAR));
+    }
+    return m;
+}
+
+/* The least distance of a ray that hits nothing. */
+static sdv_march sdv__least(const sdv_grid *g, const sdv_ray *ray, sdv_march m) {
+    sdv_box box = sdv__grid_box(g);
+    lao_v3 span = sdv_least_span(ray->origin, ray->direction, box, 0.0f);
+    float t = span.z;
+    int i;
+    for (i = 0; i < SDV_LEAST_SAMPLES && (i == 0 || t <= span.y); i++) {
+        lao_v3 p = lao_v3_along(ray->origin, ray->direction, t);
+        const lao_v4 *cell = sdv__cell_at(g, p);
+        sdv_near n = sdv__near_at(g, cell, p, ray->direction);
+        m = sdv__note(g, ray, m, n);
+        span = sdv_least_span(ray->origin, ray->direction, box, m.low);
+        t = i == 0 ? span.x : t + sdv_least_step(n, cell->w > 0.0f, cell->z, m.low, g->cell);
+    }
+    return m;
+}
+
+/* On to the surface from a point close to it. */
+static void sdv__land(const sdv_grid *g, const sdv_ray *ray, const sdv_march *m, sdv_hit *hit) {
+    lao_v3 gradient = lao_v3_make(0.0f, 0.0f, 1.0f);
+    float t = m->t;
+    int i;
+    for (i = 0; i <= SDV_POLISH_ROUNDS; i++) {
+        const lao_v4 *ends;
+        sdv_near n;
+        hit->position = lao_v3_along(ray->origin, ray->direction, t);
+        n = sdv__near_at(g, sdv__cell_at(g, hit->position), hit->position, ray->direction);
+        ends = g->cones + 2 * (size_t)n.cone;
+        gradient = sdv_round_cone_gradient(hit->position, ends[0], ends[1]);
+        hit->cone = (uint32_t)n.cone;
+        hit->t = t;
+        t = sdv_polish(t, n.distance, gradient, ray->direction, g->cell);
+    }
+    hit->normal = m->inside > 0.5f ? lao_v3_scale(gradient, -1.0f) : gradient;
+    hit->inside = m->inside > 0.5f;
+}
+
+SDV_API void sdv_trace(const sdv_grid *grid, const sdv_ray *ray, sdv_hit *hit) {
+    sdv_box box = sdv__grid_box(grid);
+    int nearest = (ray->flags & SDV_TRACE_NEAREST) != 0, i;
+    lao_v2 span =
+        sdv_ray_box(ray->origin, ray->direction, nearest ? sdv_box_grown(box, ray->reach) : box);
+    sdv_march m = sdv_march_start(span);
+    for (i = 0; i < SDV_MAX_STEPS && m.state == SDV_MARCH_GOES; i++) {
+        lao_v3 p = lao_v3_along(ray->origin, ray->direction, m.t);
+        const lao_v4 *cell = sdv__cell_at(grid, p);
+        bool occupied = cell->w > 0.0f;
+        sdv_near n = sdv_near_start(0.0f);
+        if (occupied || (nearest && sdv_is_within(cell->z, ray->reach))) {
+            n = sdv__near_at(grid, cell, p, ray->direction);
+        }
+        if (nearest) {
+            m = sdv__note(grid, ray, m, n);
+            m = sdv_march_passed(m, n) ? sdv__minimum(grid, ray, m, m.cone, m.older, m.t) : m;
+        }
+        m = sdv_march_step(m, n, occupied, cell->z, grid->cell);
+    }
+    if (nearest && m.state != SDV_MARCH_HITS) {
+        m = ray->reach > 0.0f ? m : sdv__least(grid, ray, m);
+        m.d_min = SDV_FAR;
+        m = sdv__minimum(grid, ray, m, m.low_cone, 0.0f, SDV_FAR);
+    }
+    memset(hit, 0, sizeof *hit);
+    hit->cone = SDV_NONE;
+    hit->steps = (uint32_t)m.steps;
+    hit->d_min = m.d_min;
+    hit->t_min = m.t_min;
+    if (m.state == SDV_MARCH_HITS) {
+        sdv__land(grid, ray, &m, hit);
+    }
+}
+
+/* ================================================================================================
+ * shapes, shadow, openness */
+
+/* A lower bound of the tree's distance, exact close to the surface and inside. */
+static float sdv__tree_bound(const sdv_grid *g, lao_v3 p, uint32_t *cone) {
+    const lao_v4 *cell = sdv__cell_at(g, p);
+    float bound = cell->z, outside;
+    if (cell->w > 0.0f) {
+        bound = lao_min(sdv__list_distance(g, cell, p, cone), sdv_near_reach(g->cell));
+    }
+    outside = sdv_box_distance(p, sdv__grid_box(g));
+    return outside > 0.0f ? lao_max(bound, outside) : bound;
+}
+static sdv_solid sdv__solid_at(const sdv_grid *g, const sdv_shape *shapes, uint32_t count, lao_v3 p,
+                               uint32_t *cone) {
+    sdv_solid s = sdv_solid_start(sdv__tree_bound(g, p, cone));
+    uint32_t i;
+    for (i = 0; i < count; i++) {
+        s = sdv_solid_add(s, sdv_shape_distance(p, shapes[i]), shapes[i].operation, (lao_int)i);
+    }
+    return s;
+}
+static lao_v3 sdv__solid_gradient(const sdv_grid *g, const sdv_shape *shapes, const sdv_solid *s,
+                                  lao_v3 p, uint32_t cone) {
+    if (s->part >= 0) {
+        return lao_v3_scale(sdv_shape_gradient(p, shapes[s->part]), s->side);
+    }
+    return sdv_round_cone_gradient(p, g->cones[2 * (size_t)cone], g->cones[2 * (size_t)cone + 1]);
+}
+static void sdv__solid_land(const sdv_grid *g, const sdv_shape *shapes, uint32_t count,
+                            const sdv_ray *ray, float t, sdv_hit *hit, uint32_t *shape) {
+    lao_v3 gradient;
+    int i;
+    for (i = 0; i <= SDV_POLISH_ROUNDS; i++) {
+        uint32_t cone = 0;
+        sdv_solid s;
+        hit->position = lao_v3_along(ray->origin, ray->direction, t);
+        s = sdv__solid_at(g, shapes, count, hit->position, &cone);
+        gradient = sdv__solid_gradient(g, shapes, &s, hit->position, cone);
+        hit->cone = s.part >= 0 ? SDV_CUT_CONE : cone;
+        hit->normal = hit->inside ? lao_v3_scale(gradient, -1.0f) : gradient;
+        hit->t = t;
+        if (shape) {
+            *shape = s.part >= 0 ? (uint32_t)s.part : SDV_NONE;
+        }
+        t = sdv_polish(t, s.distance, gradient, ray->direction, g->cell);
+    }
+}
+
+SDV_API void sdv_trace_shapes(const sdv_grid *grid, const sdv_shape *shapes, uint32_t count,
+                              const sdv_ray *ray, sdv_hit *hit, uint32_t *shape) {
+    float t = 0.0f;
+    uint32_t cone = 0, i;
+    memset(hit, 0, sizeof *hit);
+    hit->cone = SDV_NONE;
+    hit->d_min = SDV_FAR;
+    if (shape) {
+        *shape = SDV_NONE;
+    }
+    for (i = 0; i < SDV_MAX_STEPS && t < SDV_FAR; i++) {
+        lao_v3 p = lao_v3_along(ray->origin, ray->direction, t);
+        sdv_solid s = sdv__solid_at(grid, shapes, count, p, &cone);
+        float left;
+        hit->inside = i == 0 ? s.distance < 0.0f : hit->inside;
+        left = hit->inside ? -s.distance : s.distance;
+        hit->steps++;
+        if (left < sdv_hit_distance(grid->cell)) {
+            sdv__solid_land(grid, shapes, count, ray, t, hit, shape);
+            return;
+        }
+        t += left;
+    }
+}
+
+SDV_API float sdv_shadow(const sdv_grid *grid, lao_v3 p, lao_v3 light, float hardness, float bias) {
+    lao_v2 span = sdv_ray_box(p, light, sdv__grid_box(grid));
+    float lit = 1.0f, t = lao_max(bias, span.x);
+    int i;
+    for (i = 0; i < SDV_MAX_STEPS && t <= span.y && lit > 0.0f; i++) {
+        lao_v3 q = lao_v3_along(p, light, t);
+        float d = sdv_grid_distance(grid, q, NULL);
+        uint32_t cone;
+        lit = sdv_shadow_add(lit, d, t, hardness);
+        lit = d < sdv_hit_distance(grid->cell) ? 0.0f : lit;
+        t += lao_max(sdv__tree_bound(grid, q, &cone), sdv_hit_distance(grid->cell));
+    }
+    return lit;
+}
+SDV_API float sdv_openness(const sdv_grid *grid, lao_v3 p, lao_v3 normal, float reach) {
+    float closed = 0.0f;
+    lao_int i;
+    for (i = 0; i < SDV_OPEN_SAMPLES && reach > 0.0f; i++) {
+        float place = sdv_open_place(reach, i);
+        lao_v3 q = lao_v3_along(p, normal, place);
+        closed = sdv_open_add(closed, sdv_grid_distance(grid, q, NULL), place, i);
+    }
+    return sdv_open_result(closed);
+}
+
+/* ================================================================================================
+ * targets: pieces (points, segments, triangles) sorted along a Morton curve, under a binary tree of
+   balls */
+
+enum { SDV__PIECES = 4 }; /* of a leaf */
+typedef struct sdv__piece {
+    lao_v3 u, v, w; /* a segment has w = v, a point u = v = w */
+} sdv__piece;
+struct sdv_target {
+    lao_allocator allocator;
+    uint32_t piece_count, leaf_count; /* leaves: a power of two, the last ones may be empty */
+    sdv__piece *pieces;
+    lao_v4 *balls; /* 2 leaf_count: children of i are 2 i, 2 i + 1, the root is 1; w < 0: empty */
+    float radius;
+};
+
+static lao_result sdv__target_check(const sdv_host *host, const sdv_target_desc *desc) {
+    uint32_t i;
+    if (!desc->points || (desc->triangle_count && !desc->triangles)) {
+        return sdv__fail(host, SDV_LOG_NULL_ARGUMENT, "arrays of sdv_target_desc");
+    }
+    if (desc->point_count < 1 || desc->point_count > 1u << 28 || desc->triangle_count > 1u << 28 ||
+        !(desc->radius >= 0.0f && desc->radius < SDV_FAR)) {
+        return sdv__fail(host, SDV_LOG_TARGET_SHAPE, "%u points, %u triangles", desc->point_count,
+                         desc->triangle_count);
+    }
+    for (i = 0; i < 3 * desc->point_count; i++) {
+        if (!(fabsf(desc->points[i]) <= 1e9f)) {
+            return sdv__fail(host, SDV_LOG_TARGET_SHAPE, "point %u", i / 3);
+        }
+    }
+    for (i = 0; i < 3 * desc->triangle_count; i++) {
+        if (desc->triangles[i] >= desc->point_count) {
+            return sdv__fail(host, SDV_LOG_TARGET_SHAPE, "triangle %u", i / 3);
+        }
+    }
+    return LAO_OK;
+}
+
+static lao_v3 sdv__point(const float *points, uint32_t i) {
+    const float *p = points + 3 * (size_t)i;
+    return lao_v3_make(p[0], p[1], p[2]);
+}
+static sdv__piece sdv__piece_make(const sdv_target_desc *desc, uint32_t i) {
+    sdv__piece s;
+    const uint32_t *corners = desc->triangle_count ? desc->triangles + 3 * (size_t)i : NULL;
+    uint32_t last = desc->point_count - 1;
+    s.u = sdv__point(desc->points, corners ? corners[0] : i);
+    s.v = sdv__point(desc->points, corners ? corners[1] : i < last ? i + 1 : i);
+    s.w = corners ? sdv__point(desc->points, corners[2]) : s.v;
+    return s;
+}
+static uint32_t sdv__spread(uint32_t v) { /* 10 bits, two free ones between */
+    v = (v | v << 16) & 0x030000ffu;
+    v = (v | v << 8) & 0x0300f00fu;
+    v = (v | v << 4) & 0x030c30c3u;
+    return (v | v << 2) & 0x09249249u;
+}
+static uint32_t sdv__morton(const sdv__piece *s, const double low[3], double size) {
+    const float *u = &s->u.x, *v = &s->v.x, *w = &s->w.x;
+    uint32_t key = 0, k;
+    for (k = 0; k < 3; k++) {
+        double c = ((double)u[k] + (double)v[k] + (double)w[k]) / 3 - low[k];
+        double cell = size > 0 ? c / size * 1023 : 0;
+        key |= sdv__spread(cell > 0 ? (cell < 1023 ? (uint32_t)cell : 1023u) : 0u) << k;
+    }
+    return key;
+}
+/* Order of ascending keys, 10 bits a round; `order` and `other` have count entries each. */
+static void sdv__sort(const uint32_t *keys, uint32_t count, uint32_t *order, uint32_t *other) {
+    uint32_t round, i;
+    for (i = 0; i < count; i++) {
+        order[i] = i;
+    }
+    for (round = 0; round < 30; round += 10) {
+        uint32_t first[1025];
+        memset(first, 0, sizeof first);
+        for (i = 0; i < count; i++) {
+            first[(keys[i] >> round & 1023u) + 1]++;
+        }
+        for (i = 0; i < 1024; i++) {
+            first[i + 1] += first[i];
+        }
+        for (i = 0; i < count; i++) {
+            other[first[keys[order[i]] >> round & 1023u]++] = order[i];
+        }
+        memcpy(order, other, count * sizeof *order);
+    }
+}
+/* The ball around the box of points; a margin makes up for rounding. */
+static lao_v4 sdv__box_ball(const lao_v3 *low, const lao_v3 *high) {
+    lao_v3 d = lao_v3_sub(*high, *low);
+    lao_v3 c = lao_v3_along(*low, d, 0.5f);
+    float margin = 1e-6f * (fabsf(c.x) + fabsf(c.y) + fabsf(c.z));
+    return lao_v4_make(c.x, c.y, c.z, 0.50001f * lao_sqrt(lao_v3_dot(d, d)) + margin);
+}
+static void sdv__box_grow(lao_v3 *low, lao_v3 *high, lao_v3 p) {
+    *low = lao_v3_make(lao_min(low->x, p.x), lao_min(low->y, p.y), lao_min(low->z, p.z));
+    *high = lao_v3_make(lao_max(high->x, p.x), lao_max(high->y, p.y), lao_max(high->z, p.z));
+}
+static void sdv__target_balls(sdv_target *t) {
+    uint32_t node, k, wide = t->leaf_count * SDV__PIECES; /* pieces below a node */
+    for (node = 1; node < 2 * t->leaf_count; node++) {
+        uint32_t first, end;
+        lao_v3 low, high;
+        wide /= node > 1 && (node & (node - 1)) == 0 ? 2u : 1u; /* the first of its level */
+        first = node * wide - t->leaf_count * SDV__PIECES;
+        end = first + wide < t->piece_count ? first + wide : t->piece_count;
+        t->balls[node] = lao_v4_make(0.0f, 0.0f, 0.0f, -1.0f);
+        if (first >= end) {
+            continue;
+        }
+        low = high = t->pieces[first].u;
+        for (k = first; k < end; k++) {
+            sdv__box_grow(&low, &high, t->pieces[k].u);
+            sdv__box_grow(&low, &high, t->pieces[k].v);
+            sdv__box_grow(&low, &high, t->pieces[k].w);
+        }
+        t->balls[node] = sdv__box_ball(&low, &high);
+    }
+}
+static void sdv__target_fill(sdv_target *t, const sdv_target_desc *desc, uint32_t *keys) {
+    uint32_t *order = keys + t->piece_count, *other = order + t->piece_count, i, k;
+    double low[3] = {0, 0, 0}, high[3] = {0, 0, 0}, size = 0;
+    for (i = 0; i < desc->point_count; i++) {
+        for (k = 0; k < 3; k++) {
+            double v = (double)desc->points[3 * (size_t)i + k];
+            low[k] = i == 0 || v < low[k] ? v : low[k];
+            high[k] = i == 0 || v > high[k] ? v : high[k];
+            size = high[k] - low[k] > size ? high[k] - low[k] : size;
+        }
+    }
+    for (i = 0; i < t->piece_count; i++) {
+        sdv__piece s = sdv__piece_make(desc, i);
+        keys[i] = sdv__morton(&s, low, size);
+    }
+    sdv__sort(keys, t->piece_count, order, other);
+    for (i = 0; i < t->piece_count; i++) {
+        t->pieces[i] = sdv__piece_make(desc, order[i]);
+    }
+    sdv__target_balls(t);
+}
+
+SDV_API lao_result sdv_target_create(const sdv_host *host, const sdv_target_desc *desc,
+                                     sdv_target **target) {
+    lao_allocator a = sdv__allocator(host);
+    sdv_target *t;
+    uint32_t *keys;
+    lao_result result;
+    if (!desc || !target) {
+        return sdv__fail(host, SDV_LOG_NULL_ARGUMENT, "sdv_target_create");
+    }
+    result = sdv__target_check(host, desc);
+    if (result != LAO_OK) {
+        return result;
+    }
+    t = (sdv_target *)sdv__take(&a, 1, sizeof *t);
+    if (!t) {
+        return sdv__fail(host, SDV_LOG_MEMORY, "a target");
+    }
+    memset(t, 0, sizeof *t);
+    t->allocator = a;
+    t->radius = desc->radius;
+    t->piece_count = desc->triangle_count ? desc->triangle_count : desc->point_count - 1;
+    t->piece_count = t->piece_count ? t->piece_count : 1; /* a point */
+    for (t->leaf_count = 1; t->leaf_count * SDV__PIECES < t->piece_count; t->leaf_count *= 2) {
+    }
+    t->pieces = (sdv__piece *)sdv__take(&a, t->piece_count, sizeof *t->pieces);
+    t->balls = (lao_v4 *)sdv__take(&a, 2 * (uint64_t)t->leaf_count, sizeof *t->balls);
+    keys = (uint32_t *)sdv__take(&a, 3 * (uint64_t)t->piece_count, sizeof *keys);
+    if (t->pieces && t->balls && keys) {
+        sdv__target_fill(t, desc, keys);
+        *target = t;
+    } else {
+        result = sdv__fail(host, SDV_LOG_MEMORY, "a target of %u pieces", t->piece_count);
+        sdv_target_free(t);
+    }
+    sdv__give(&a, keys);
+    return result;
+}
+
+SDV_API void sdv_target_free(sdv_target *target) {
+    if (target) {
+        lao_allocator a = target->allocator;
+        sdv__give(&a, target->pieces);
+        sdv__give(&a, target->balls);
+        sdv__give(&a, target);
+    }
+}
+
+static int sdv__same_point(lao_v3 a, lao_v3 b) {
+    return a.x == b.x && a.y == b.y && a.z == b.z;
+}
+static float sdv__piece_cone(const sdv__piece *s, lao_v4 a, lao_v4 b) {
+    if (sdv__same_point(s->v, s->w)) {
+        return sdv_segment_cone(s->u, s->v, a, b);
+    }
+    return sdv_triangle_cone(s->u, s->v, s->w, a, b);
+}
+/* No point of the ball is nearer to the cone than this. */
+static float sdv__ball_cone(lao_v4 ball, lao_v4 a, lao_v4 b) {
+    float d = sdv_round_cone(lao_v3_make(ball.x, ball.y, ball.z), a, b);
+    return ball.w < 0.0f ? SDV_FAR : d - ball.w - 1e-5f * fabsf(d);
+}
+SDV_API float sdv_target_cone(const sdv_target *target, lao_v4 a, lao_v4 b) {
+    uint32_t stack[64], n = 0, i;
+    float least = SDV_FAR;
+    stack[n++] = 1;
+    while (n > 0) {
+        uint32_t node = stack[--n];
+        if (sdv__ball_cone(target->balls[node], a, b) >= least) {
+            continue;
+        }
+        if (node < target->leaf_count) { /* the nearer child next */
+            uint32_t child = 2 * node;
+            uint32_t second = sdv__ball_cone(target->balls[child], a, b) <
+                              sdv__ball_cone(target->balls[child + 1], a, b);
+            stack[n++] = child + second;
+            stack[n++] = child + !second;
+            continue;
+        }
+        i = (node - target->leaf_count) * SDV__PIECES;
+        for (node = i; node < i + SDV__PIECES && node < target->piece_count; node++) {
+            const sdv__piece *s = target->pieces + node;
+            lao_v3 low = s->u, high = s->u;
+            sdv__box_grow(&low, &high, s->v);
+            sdv__box_grow(&low, &high, s->w);
+            if (sdv__ball_cone(sdv__box_ball(&low, &high), a, b) < least) {
+                least = lao_min(least, sdv__piece_cone(s, a, b));
+            }
+        }
+    }
+    return least - target->radius;
+}
+SDV_API float sdv_target_point(const sdv_target *target, lao_v3 p) {
+    lao_v4 ball = lao_v4_make(p.x, p.y, p.z, 0.0f);
+    return sdv_target_cone(target, ball, ball);
+}
+
+enum { SDV__CHUNK = 64 }; /* segments or rows of one job item */
+typedef struct sdv__measure {
+    const sdv_target *target;
+    const sdv_tree *tree;
+    float *segments;
+} sdv__measure;
+static void sdv__measure_chunk(void *arg, uint32_t chunk) {
+    const sdv__measure *m = (const sdv__measure *)arg;
+    uint32_t i, first = chunk * SDV__CHUNK;
+    for (i = first; i < first + SDV__CHUNK && i < m->tree->segment_count; i++) {
+        const sdv_segment *s = m->tree->segments + i;
+        m->segments[i] =
+            sdv_target_cone(m->target, m->tree->nodes[s->parent], m->tree->nodes[s->child]);
+    }
+}
+SDV_API lao_result sdv_target_distances(const sdv_host *host, const sdv_target *target,
+                                        const sdv_tree *tree, const sdv_reduced *reduced,
+                                        float *segments, float *nodes) {
+    lao_allocator a = sdv__allocator(host);
+    sdv__measure m;
+    sdv__work work;
+    uint32_t i;
+    int cancelled;
+    if (!target || !tree || !tree->memory || (nodes && (!reduced || !reduced->memory))) {
+        return sdv__fail(host, SDV_LOG_NULL_ARGUMENT, "sdv_target_distances");
+    }
+    m.target = target;
+    m.tree = tree;
+    m.segments =
+        segments ? segments : (float *)sdv__take(&a, tree->segment_count, sizeof *m.segments);
+    if (!m.segments) {
+        return sdv__fail(host, SDV_LOG_MEMORY, "%u distances", tree->segment_count);
+    }
+    work.host = host;
+    work.done = 0;
+    work.total = (tree->segment_count + SDV__CHUNK - 1) / SDV__CHUNK;
+    cancelled = sdv__run(&work, (uint32_t)work.total, sdv__measure_chunk, &m);
+    for (i = 0; nodes && !cancelled && i < reduced->node_count; i++) {
+        nodes[i] = lao_bits_float(0x7fc00000u);
+    }
+    for (i = 0; nodes && !cancelled && i < tree->node_count; i++) {
+        uint32_t segment = tree->parent_segments[i];
+        float *least = nodes + reduced->owners[i];
+        if (segment != SDV_NONE && !(*least <= m.segments[segment])) {
+            *least = m.segments[segment];
+        }
+    }
+    if (!segments) {
+        sdv__give(&a, m.segments);
+    }
+    return cancelled ? sdv__fail(host, SDV_LOG_CANCELLED, "measuring distances") : LAO_OK;
+}
+
+/* ================================================================================================
+ * pull-push */
+
+typedef struct sdv__level {
+    float *values, *weights;
+    uint32_t width, height;
+} sdv__level;
+typedef struct sdv__pull {
+    const sdv_pull_push_desc *desc;
+    const sdv__level *fine, *coarse;
+    lao_int exponent;
+} sdv__pull;
+
+/* Up to four channels of a texel from channel c on. */
+static lao_v4 sdv__channels(const sdv__level *l, size_t texel, uint32_t channels, uint32_t c) {
+    const float *v = l->values + texel * channels + c;
+    uint32_t n = channels - c;
+    return lao_v4_make(v[0], n > 1 ? v[1] : 0.0f, n > 2 ? v[2] : 0.0f, n > 3 ? v[3] : 0.0f);
+}
+static void sdv__channels_set(const sdv__level *l, size_t texel, uint32_t channels, uint32_t c,
+                              lao_v4 value) {
+    const float *v = &value.x;
+    uint32_t k;
+    for (k = 0; k < 4 && c + k < channels; k++) {
+        l->values[texel * channels + c + k] = v[k];
+    }
+}
+static void sdv__pull_texel(const sdv__pull *p, uint32_t x, uint32_t y) {
+    const sdv__level *fine = p->fine, *coarse = p->coarse;
+    size_t texel = (size_t)coarse->width * y + x;
+    uint32_t c, i, channels = p->desc->channels;
+    float h = sdv_pull_share((lao_int)p->desc->pull);
+    for (c = 0; c < channels; c += 4) {
+        sdv_mix m = sdv_mix_start(lao_v4_make(0.0f, 0.0f, 0.0f, 0.0f));
+        for (i = 0; i < 4; i++) {
+            uint32_t fx = 2 * x + (i & 1u), fy = 2 * y + (i >> 1);
+            size_t child = (size_t)fine->width * fy + fx;
+            if (fx < fine->width && fy < fine->height) {
+                m = sdv_mix_add(m, sdv__channels(fine, child, channels, c), fine->weights[child],
+                                h);
+            }
+        }
+        sdv__channels_set(coarse, texel, channels, c, sdv_mix_value(m));
+        coarse->weights[texel] = m.weight;
+    }
+}
+static void sdv__push_texel(const sdv__pull *p, uint32_t x, uint32_t y) {
+    const sdv__level *fine = p->fine, *coarse = p->coarse;
+    size_t texel = (size_t)fine->width * y + x;
+    uint32_t c, channels = p->desc->channels;
+    lao_int i, push = (lao_int)p->desc->push;
+    float own = sdv_push_own(fine->weights[texel], p->exponent), weight = 0.0f;
+    for (c = 0; c < channels; c += 4) {
+        sdv_mix m = sdv_mix_start(lao_v4_make(0.0f, 0.0f, 0.0f, 0.0f));
+        for (i = 0; i < 4; i++) {
+            lao_int px = sdv_push_parent((lao_int)x, i & 1);
+            lao_int py = sdv_push_parent((lao_int)y, i >> 1);
+            float h = sdv_push_share(push, i & 1) * sdv_push_share(push, i >> 1);
+            if (px >= 0 && py >= 0 && px < (lao_int)coarse->width && py < (lao_int)coarse->height) {
+                size_t parent = (size_t)coarse->width * (size_t)py + (size_t)px;
+                m = sdv_mix_add(m, sdv__channels(coarse, parent, channels, c),
+                                coarse->weights[parent], h);
+            }
+        }
+        sdv__channels_set(fine, texel, channels, c,
+                          sdv_push_value(m, sdv__channels(fine, texel, channels, c), own));
+        weight = sdv_push_weight(m, own);
+    }
+    fine->weights[texel] = weight;
+}
+static void sdv__pull_rows(void *arg, uint32_t chunk) {
+    const sdv__pull *p = (const sdv__pull *)arg;
+    uint32_t x, y, first = chunk * SDV__CHUNK;
+    for (y = first; y < first + SDV__CHUNK && y < p->coarse->height; y++) {
+        for (x = 0; x < p->coarse->width; x++) {
+            sdv__pull_texel(p, x, y);
+        }
+    }
+}
+static void sdv__push_rows(void *arg, uint32_t chunk) {
+    const sdv__pull *p = (const sdv__pull *)arg;
+    uint32_t x, y, first = chunk * SDV__CHUNK;
+    for (y = first; y < first + SDV__CHUNK && y < p->fine->height; y++) {
+        for (x = 0; x < p->fine->width; x++) {
+            sdv__push_texel(p, x, y);
+        }
+    }
+}
+/* A pixel without a weight has no value either. */
+static void sdv__pull_clean(const sdv__level *l, uint32_t channels) {
+    size_t i, n = (size_t)l->width * l->height;
+    for (i = 0; i < n; i++) {
+        if (!(l->weights[i] > 0.0f)) {
+            l->weights[i] = 0.0f;
+            memset(l->values + i * channels, 0, channels * sizeof *l->values);
+        }
+    }
+}
+enum { SDV__LEVELS = 17 };
+static uint32_t sdv__chunks(uint32_t rows) {
+    return (rows + SDV__CHUNK - 1) / SDV__CHUNK;
+}
+static int sdv__pull_run(const sdv_host *host, sdv__level *levels, uint32_t count, sdv__pull *p) {
+    sdv__work work;
+    const sdv__level *top = levels + count - 1;
+    uint32_t i;
+    work.host = host;
+    work.done = 0;
+    work.total = 0;
+    for (i = 0; i < count; i++) {
+        work.total += (i ? sdv__chunks(levels[i].height) : 0u) +
+                      (i + 1 < count ? sdv__chunks(levels[i].height) : 0u);
+    }
+    for (i = 1; i < count; i++) {
+        p->fine = levels + i - 1;
+        p->coarse = levels + i;
+        if (sdv__run(&work, sdv__chunks(levels[i].height), sdv__pull_rows, p)) {
+            return 1;
+        }
+    }
+    top->weights[0] = top->weights[0] > 0.0f ? 1.0f : 0.0f;
+    for (i = count - 1; i-- > 0 && top->weights[0] > 0.0f;) {
+        p->fine = levels + i;
+        p->coarse = levels + i + 1;
+        if (sdv__run(&work, sdv__chunks(levels[i].height), sdv__push_rows, p)) {
+            return 1;
+        }
+    }
+    return 0;
+}
+
+SDV_API lao_result sdv_pull_push(const sdv_host *host, const sdv_pull_push_desc *desc,
+                                 uint32_t *empty) {
+    lao_allocator a = sdv__allocator(host);
+    sdv__level levels[SDV__LEVELS];
+    sdv__pull p;
+    uint64_t texels = 0;
+    uint32_t i, count = 1;
+    float *memory, *at;
+    int cancelled;
+    if (!desc || !desc->values || !desc->weights) {
+        return sdv__fail(host, SDV_LOG_NULL_ARGUMENT, "sdv_pull_push");
+    }
+    if (desc->width < 1 || desc->height < 1 || desc->width > 32768 || desc->height > 32768 ||
+        desc->channels < 1 || desc->channels > 64) {
+        return sdv__fail(host, SDV_LOG_IMAGE_SIZE, "%u x %u, %u channels", desc->width,
+                         desc->height, desc->channels);
+    }
+    levels[0].width = desc->width;
+    levels[0].height = desc->height;
+    levels[0].values = desc->values;
+    levels[0].weights = desc->weights;
+    for (; levels[count - 1].width > 1 || levels[count - 1].height > 1; count++) {
+        levels[count].width = (levels[count - 1].width + 1) / 2;
+        levels[count].height = (levels[count - 1].height + 1) / 2;
+        texels += (uint64_t)levels[count].width * levels[count].height;
+    }
+    memory = (float *)sdv__take(&a, texels * (desc->channels + 1), sizeof *memory);
+    if (!memory) {
+        return sdv__fail(host, SDV_LOG_MEMORY, "the pyramid of a %u x %u image", desc->width,
+                         desc->height);
+    }
+    for (i = 1, at = memory; i < count; i++) {
+        size_t n = (size_t)levels[i].width * levels[i].height;
+        levels[i].values = at;
+        levels[i].weights = at + n * desc->channels;
+        at += n * (desc->channels + 1);
+    }
+    p.desc = desc;
+    p.exponent = desc->exponent ? (lao_int)desc->exponent : 1;
+    p.exponent = p.exponent < 1023 ? p.exponent : 1023;
+    sdv__pull_clean(levels, desc->channels);
+    cancelled = sdv__pull_run(host, levels, count, &p);
+    if (empty && !cancelled) {
+        *empty = !(levels[count - 1].weights[0] > 0.0f);
+    }
+    sdv__give(&a, memory);
+    return cancelled ? sdv__fail(host, SDV_LOG_CANCELLED, "filling an image") : LAO_OK;
+}
+
+/* ================================================================================================
+ * the module */
+// clang-format off
+#define SDV__WRITE(image) {image, LAO_LEVEL_SAME, 0, LAO_PHASE_THIS, LAO_LOAD_DISCARD}
+#define SDV__READ(image) {image, LAO_LEVEL_SAME, 0, LAO_PHASE_THIS, LAO_LOAD_DISCARD}
+#define SDV__KEEP(image) {image, LAO_LEVEL_SAME, 0, LAO_PHASE_THIS, LAO_LOAD_KEEP}
+#define SDV__WITH_TREE {{"#vessel_cells", '>', 0}}
+
+static const lao_buffer_row sdv__buffers[] = {
+    {"vessel_box", LAO_FORMAT_RGBA32F}, {"vessel_cells", LAO_FORMAT_RGBA32F}, {"vessel_ids", LAO_FORMAT_R32F},
+    {"vessel_cones", LAO_FORMAT_RGBA32F}, {"vessel_colors", LAO_FORMAT_RGBA8}
+};
+
+static const lao_image_row sdv__images[] = {
+    {"vessel_position", LAO_FORMAT_RGBA32F, LAO_SIZE_FULL, 0, 0, NULL, 0, LAO_ENCODING_PLAIN, {0, 0, 0, -1}, {NULL, 0, 0}, {"position.X", "position.Y", "position.Z", "segment.V"}},
+    {"vessel_normal",   LAO_FORMAT_RGBA32F, LAO_SIZE_FULL, 0, 0, NULL, 0, LAO_ENCODING_PLAIN, {0, 0, 0, 0},  {NULL, 0, 0}, {"normal.X", "normal.Y", "normal.Z", "dmin.V"}},
+    {"vessel_ray",      LAO_FORMAT_RGBA32F, LAO_SIZE_FULL, 0, 0, NULL, 0, LAO_ENCODING_PLAIN, {0, 0, 0, 0},  {NULL, 0, 0}, {NULL, NULL, NULL, NULL}}
+};
+
+static const lao_pass_row sdv__passes[] = {
+    {"vessel_trace", LAO_PASS_FULLSCREEN, "vessel_trace", 0, LAO_STAGE_DRAW, LAO_SCOPE_PER_SET, LAO_REPEAT_NONE, NULL, LAO_BLEND_NONE, LAO_DEPTH_NONE, LAO_CULL_NONE, SDV__WITH_TREE,
+     {SDV__WRITE("vessel_position"), SDV__WRITE("vessel_normal"), SDV__WRITE("vessel_ray")},
+     {SDV__READ("#vessel_box"), SDV__READ("#vessel_cells"), SDV__READ("#vessel_ids"), SDV__READ("#vessel_cones")}},
+    {"vessel_shade", LAO_PASS_FULLSCREEN, "vessel_shade", 0, LAO_STAGE_SHADE, LAO_SCOPE_PER_SET, LAO_REPEAT_NONE, NULL, LAO_BLEND_NONE, LAO_DEPTH_NEARER, LAO_CULL_NONE, SDV__WITH_TREE,
+     {SDV__KEEP("shaded"), SDV__KEEP("zbuffer")},
+     {SDV__READ("vessel_position"), SDV__READ("vessel_normal"), SDV__READ("vessel_ray"), SDV__READ("#vessel_colors"),
+      SDV__READ("#vessel_box"), SDV__READ("#vessel_cells"), SDV__READ("#vessel_ids"), SDV__READ("#vessel_cones")}}
+};
+
+static const lao_setting_row sdv__settings[] = {
+#define SDV__ROW(name, type, minimum, maximum, standard, structural, unit, choices, help) \
+    {#name, LAO_SETTING_##type, minimum, maximum, standard, structural, unit, choices, help},
+    SDV_SETTINGS(SDV__ROW)
+#undef SDV__ROW
+};
+
+static const lao_module sdv__module = {
+    "vessel",
+    sdv__passes, (uint32_t)(sizeof sdv__passes / sizeof sdv__passes[0]),
+    sdv__images, (uint32_t)(sizeof sdv__images / sizeof sdv__images[0]),
+    sdv__settings, (uint32_t)(sizeof sdv__settings / sizeof sdv__settings[0]),
+    NULL, 0, NULL, 0,
+    sdv__buffers, (uint32_t)(sizeof sdv__buffers / sizeof sdv__buffers[0])
+};
+// clang-format on
+
+SDV_API const lao_module *sdv_module(void) {
+    return &sdv__module;
+}
+
+static void sdv__object_buffer(sdv_object *object, uint32_t index, const void *data,
+                               uint32_t count) {
+    object->buffers[index].name = sdv__buffers[index].name;
+    object->buffers[index].data = data;
+    object->buffers[index].texel_count = count;
+}
+
+SDV_API lao_result sdv_object_make(const sdv_host *host, const sdv_grid *grid,
+                                   const uint8_t *colors, sdv_object *object) {
+    static const uint8_t coral[4] = {226, 106, 92, 255};
+    lao_allocator allocator = sdv__allocator(host);
+    uint8_t *own = NULL;
+    size_t i, size = 8 * (size_t)(grid ? grid->cone_count : 0);
+    int k;
+    if (!grid || !object || !grid->cells || !grid->cone_count) {
+        return sdv__fail(host, SDV_LOG_NULL_ARGUMENT, "sdv_object_make");
+    }
+    if (!colors) {
+        own = (uint8_t *)allocator.allocate(allocator.user, size);
+        if (!own) {
+            return sdv__fail(host, SDV_LOG_MEMORY, "colours of cones");
+        }
+        for (i = 0; i < size; i++) {
+            own[i] = coral[i % 4];
+        }
+    }
+    memset(object, 0, sizeof *object);
+    object->allocator = allocator;
+    object->colors = own;
+    object->box[0] = lao_v4_make(grid->origin.x, grid->origin.y, grid->origin.z, grid->cell);
+    object->box[1] = lao_v4_make((float)grid->size[0], (float)grid->size[1], (float)grid->size[2],
+                                 (float)grid->cone_count);
+    sdv__object_buffer(object, 0, object->box, 2);
+    sdv__object_buffer(object, 1, grid->cells, grid->cell_count);
+    sdv__object_buffer(object, 2, grid->ids, grid->id_count);
+    sdv__object_buffer(object, 3, grid->cones, 2 * grid->cone_count);
+    sdv__object_buffer(object, 4, own ? own : colors, 2 * grid->cone_count);
+    object->desc.buffers = object->buffers;
+    object->desc.buffer_count = 5;
+    object->desc.item_count = grid->cone_count;
+    for (i = 0; i < grid->cone_count * (size_t)2; i++) {
+        const lao_v4 *ball = &grid->cones[i];
+        const float centre[3] = {ball->x, ball->y, ball->z};
+        for (k = 0; k < 3; k++) {
+            float low = centre[k] - ball->w, high = centre[k] + ball->w;
+            object->desc.bounds[0][k] = i ? lao_min(object->desc.bounds[0][k], low) : low;
+            object->desc.bounds[1][k] = i ? lao_max(object->desc.bounds[1][k], high) : high;
+        }
+    }
+    return LAO_OK;
+}
+
+SDV_API void sdv_object_free(sdv_object *object) {
+    if (object && object->colors) {
+        object->allocator.release(object->allocator.user, object->colors,
+                                  4 * (size_t)object->buffers[4].texel_count);
+        object->colors = NULL;
+    }
+}
+
+#ifdef __cplusplus
+}
+#endif
+
+#endif /* SDFVESSEL_IMPLEMENTATION_DONE */
+#endif /* SDFVESSEL_IMPLEMENTATION */

@@ -1,0 +1,72 @@
+/* Vessels over the scene where they are nearer: light, occlusion from the field, contours and depth shadows of near
+   misses (L19 5, Fig. 8; METHODS 5.4), and a silhouette where a ray just missed. */
+LAO_TEX(0, sampler2D, position)
+LAO_TEX(1, sampler2D, normal)
+LAO_TEX(2, sampler2D, ray)
+LAO_TEX(3, samplerBuffer, colors) /* two of each cone: at its parent and at its child */
+LAO_TEX(4, samplerBuffer, box)
+LAO_TEX(5, samplerBuffer, cells)
+LAO_TEX(6, samplerBuffer, ids)
+LAO_TEX(7, samplerBuffer, cones)
+LAO_CONSTANT(0, lao_constant_near_miss)
+LAO_CONSTANT(1, lao_constant_surface_shininess)
+LAO_CONSTANT(2, lao_constant_field_occlusion)
+
+LAO_OUT(0, vec4, out_color)
+
+#ifdef LAO_FRAGMENT
+/* Signed distance at p, from the list of its cell. */
+float field_at(sdv_box b, lao_v3 p) {
+    return sdv_near_at(cells, ids, cones, b, texelFetch(cells, sdv_cell_at(b, p)), p, lao_v3_make(0.0, 0.0, 1.0)).distance;
+}
+
+/* Openness of p along its normal: sdv_openness. */
+float openness(sdv_box b, lao_v3 p, lao_v3 n) {
+    float reach = 0.01 * lao_setting_occlusion_reach * lao_frame.depth.z;
+    float closed = 0.0;
+    for (int i = 0; i < SDV_OPEN_SAMPLES; i++) {
+        float place = sdv_open_place(reach, i);
+        closed = sdv_open_add(closed, field_at(b, lao_v3_along(p, n, place)), place, i);
+    }
+    return sdv_open_result(closed);
+}
+
+void main() {
+    ivec2 pixel = LAO_PIXEL;
+    vec4 hit = texelFetch(position, pixel, 0);
+    vec4 n = texelFetch(normal, pixel, 0);
+    vec4 r = texelFetch(ray, pixel, 0);
+    lao_v2 slope = lao_pixel_slope(lao_frame.ray, float(pixel.x) + 0.5, float(pixel.y) + 0.5);
+    lao_v3 origin = lao_ray_origin(lao_frame.world, slope, lao_frame.depth.w);
+    lao_v3 direction = lao_ray_direction(lao_frame.world, slope, lao_frame.depth.w);
+    bool missed = hit.w < 0.0;
+    bool outlined = lao_constant_near_miss != SDV_NEAR_MISS_NONE &&
+                    (missed ? sdv_is_silhouette(false, n.w, lao_setting_silhouette)
+                            : sdv_is_contour(n.w, lao_setting_contour));
+    if (missed && !outlined) {
+        discard;
+    }
+    lao_v3 p = outlined ? lao_v3_along(origin, direction, r.y) : hit.xyz;
+    lao_v4 clip = lao_project(lao_frame.projection, lao_transform(lao_frame.view, p));
+    gl_FragDepth = clip.z / clip.w;
+    if (outlined) {
+        out_color = vec4(0.0, 0.0, 0.0, 1.0);
+        return;
+    }
+    int at = 2 * int(hit.w);
+    lao_v3 color = sdv_cone_color(p, texelFetch(cones, at), texelFetch(cones, at + 1), texelFetch(colors, at).xyz,
+                                  texelFetch(colors, at + 1).xyz);
+    LAO_EXACT float light = 1.0;
+    if (lao_constant_field_occlusion != 0) {
+        light = sdv_dimmed(light, 1.0 - openness(sdv_box_fetch(box), p, n.xyz), lao_setting_occlusion_strength);
+    }
+    if (lao_constant_near_miss != SDV_NEAR_MISS_NONE &&
+        sdv_is_depth_shadow(n.w, r.y, r.x, lao_setting_shadow_ratio, 0.01 * lao_setting_shadow_width * lao_frame.depth.z)) {
+        light = sdv_dimmed(light, 1.0, lao_setting_shadow_strength);
+    }
+    out_color = vec4(sdv_shade(color, n.xyz, lao_v3_scale(direction, -1.0), lao_setting_surface_ambient,
+                               lao_setting_surface_diffuse, lao_setting_surface_specular, lao_constant_surface_shininess,
+                               light),
+                     1.0);
+}
+#endif

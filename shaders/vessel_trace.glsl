@@ -1,0 +1,122 @@
+/* A ray per pixel through the distance field of a vessel tree (L19 3.2; METHODS 5.3, 5.4): sdv_trace by texel fetches. */
+LAO_TEX(0, samplerBuffer, box)   /* lower corner and edge of a cell; cells along each axis */
+LAO_TEX(1, samplerBuffer, cells) /* of sdv_grid, like what follows */
+LAO_TEX(2, samplerBuffer, ids)
+LAO_TEX(3, samplerBuffer, cones)
+LAO_CONSTANT(0, lao_constant_near_miss)
+
+LAO_OUT(0, vec4, out_position) /* world, mm; number of the cone, -1: nothing was hit */
+LAO_OUT(1, vec4, out_normal)   /* world, towards the viewer; least distance of a near miss, mm */
+LAO_OUT(2, vec4, out_ray)      /* mm along the ray: hit, near miss; samples; 1: from inside a vessel */
+
+#ifdef LAO_FRAGMENT
+sdv_near near_at(sdv_box b, lao_v3 p, lao_v3 direction) {
+    return sdv_near_at(cells, ids, cones, b, texelFetch(cells, sdv_cell_at(b, p)), p, direction);
+}
+
+/* Refines a local minimum whose sample was nearest to `cone`. */
+sdv_march minimum(sdv_box b, lao_v3 origin, lao_v3 direction, sdv_march m, float cone, float low, float high) {
+    sdv_minimum found = sdv_minimum_start(cone);
+    for (int i = 0; i < SDV_MINIMUM_ROUNDS; i++) {
+        if (found.cone < 0.0) {
+            break;
+        }
+        int at = 2 * int(found.cone);
+        found = sdv_minimum_add(found, origin, direction, texelFetch(cones, at), texelFetch(cones, at + 1), low, high);
+        found = sdv_minimum_next(found, near_at(b, lao_v3_along(origin, direction, found.t), direction));
+    }
+    return sdv_march_minimum(m, found);
+}
+
+sdv_march note(lao_v3 origin, lao_v3 direction, sdv_march m, sdv_near n) {
+    if (n.cone < 0.0) {
+        return m;
+    }
+    int at = 2 * int(n.cone);
+    return sdv_march_note(m, sdv_minimum_add(sdv_minimum_start(n.cone), origin, direction, texelFetch(cones, at),
+                                             texelFetch(cones, at + 1), 0.0, SDV_FAR));
+}
+
+/* The least distance of a ray that hits nothing. */
+sdv_march least(sdv_box b, lao_v3 origin, lao_v3 direction, sdv_march start) {
+    sdv_march m = start;
+    lao_v3 span = sdv_least_span(origin, direction, b, 0.0);
+    float t = span.z;
+    for (int i = 0; i < SDV_LEAST_SAMPLES; i++) {
+        if (i > 0 && !(t <= span.y)) {
+            break;
+        }
+        lao_v3 p = lao_v3_along(origin, direction, t);
+        vec4 cell = texelFetch(cells, sdv_cell_at(b, p));
+        sdv_near n = sdv_near_at(cells, ids, cones, b, cell, p, direction);
+        m = note(origin, direction, m, n);
+        span = sdv_least_span(origin, direction, b, m.low);
+        t = i == 0 ? span.x : t + sdv_least_step(n, cell.w > 0.0, cell.z, m.low, b.cell);
+    }
+    return m;
+}
+
+/* On to the surface from a point close to it. */
+void land(sdv_box b, lao_v3 origin, lao_v3 direction, sdv_march m) {
+    float t = m.t;
+    for (int i = 0; i <= SDV_POLISH_ROUNDS; i++) {
+        lao_v3 p = lao_v3_along(origin, direction, t);
+        sdv_near n = near_at(b, p, direction);
+        int at = 2 * int(n.cone);
+        lao_v3 gradient = sdv_round_cone_gradient(p, texelFetch(cones, at), texelFetch(cones, at + 1));
+        out_position = vec4(p, n.cone);
+        out_normal.xyz = m.inside > 0.5 ? lao_v3_scale(gradient, -1.0) : gradient;
+        out_ray.x = t;
+        t = sdv_polish(t, n.distance, gradient, direction, b.cell);
+    }
+}
+
+void main() {
+    ivec2 pixel = LAO_PIXEL;
+    lao_v2 slope = lao_pixel_slope(lao_frame.ray, float(pixel.x) + 0.5, float(pixel.y) + 0.5);
+    lao_v3 origin = lao_ray_origin(lao_frame.world, slope, lao_frame.depth.w);
+    lao_v3 direction = lao_ray_direction(lao_frame.world, slope, lao_frame.depth.w);
+    sdv_box b = sdv_box_fetch(box);
+    bool nearest = lao_constant_near_miss != SDV_NEAR_MISS_NONE;
+    sdv_box around = b;
+    float reach = 0.0;
+    if (lao_constant_near_miss == SDV_NEAR_MISS_CLOSE) {
+        reach = sdv_near_miss_reach(lao_setting_silhouette, lao_setting_contour, lao_setting_shadow_width,
+                                    lao_frame.depth.z);
+        around = sdv_box_grown(b, reach);
+    }
+    sdv_march m = sdv_march_start(sdv_ray_box(origin, direction, around));
+    for (int i = 0; i < SDV_MAX_STEPS; i++) {
+        if (m.state != SDV_MARCH_GOES) {
+            break;
+        }
+        lao_v3 p = lao_v3_along(origin, direction, m.t);
+        vec4 cell = texelFetch(cells, sdv_cell_at(b, p));
+        bool occupied = cell.w > 0.0;
+        sdv_near n = sdv_near_start(0.0);
+        if (occupied || (nearest && sdv_is_within(cell.z, reach))) {
+            n = sdv_near_at(cells, ids, cones, b, cell, p, direction);
+        }
+        if (nearest) {
+            m = note(origin, direction, m, n);
+            if (sdv_march_passed(m, n)) {
+                m = minimum(b, origin, direction, m, m.cone, m.older, m.t);
+            }
+        }
+        m = sdv_march_step(m, n, occupied, cell.z, b.cell);
+    }
+    if (nearest && m.state != SDV_MARCH_HITS) {
+        if (!(reach > 0.0)) {
+            m = least(b, origin, direction, m);
+        }
+        m.d_min = SDV_FAR;
+        m = minimum(b, origin, direction, m, m.low_cone, 0.0, SDV_FAR);
+    }
+    out_position = vec4(0.0, 0.0, 0.0, -1.0);
+    out_normal = vec4(0.0, 0.0, 0.0, m.d_min);
+    out_ray = vec4(0.0, m.t_min, m.steps, m.inside);
+    if (m.state == SDV_MARCH_HITS) {
+        land(b, origin, direction, m);
+    }
+}
+#endif
