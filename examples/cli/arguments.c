@@ -21,7 +21,7 @@ typedef enum flag_type {
     FLAG_AUTO,    /* double above 0, or "auto": 0 */
     FLAG_SPACING, /* double[3] above 0, or one for all */
     FLAG_SIZE,    /* uint32_t[2] */
-    FLAG_RANGE,   /* double[2] */
+    FLAG_RANGE,   /* colour_end[2] */
     FLAG_COLOR,   /* double[4] */
     FLAG_PAINT,   /* const char *, a colour or the name of something with colours */
     FLAG_ASSIGN,  /* name=value of a setting */
@@ -45,7 +45,7 @@ typedef struct flag_row {
 
 // clang-format off
 static const flag_row flags[] = {
-    {"--out", "-o", "FILE.png", FLAG_TEXT, BOTH, ALL(out), NULL, "the picture; with --frames a pattern (out_%04d.png, first = 0), or a video: .mp4, .webm, .gif"},
+    {"--out", "-o", "FILE.png", FLAG_TEXT, BOTH | CLI_SHEET, ALL(out), NULL, "the picture; with --frames a pattern (out_%04d.png, first = 0), or a video: .mp4, .webm, .gif"},
     {"--out", "-o", "FILE", FLAG_TEXT, CLI_FLOW, ALL(out), NULL, "the lines: .vtp (with time and speed), .trk (the same) or .tck (positions alone)"},
     {"--seeds", NULL, "N", FLAG_COUNT, TRACE, ALL(flow.seeds), NULL, "lines, each from a random place inside and a random time (one per 4 mm^3, 1000 to 30000)"},
     {"--seed", NULL, "N", FLAG_COUNT, TRACE, ALL(flow.seed), NULL, "of the random numbers; the same gives the same lines"},
@@ -78,13 +78,20 @@ static const flag_row flags[] = {
     {"--time", NULL, "MS", FLAG_NUMBER, BOTH, ALL(time), NULL, "show this time: of lines with times the trails (trail taper, unless set)"},
     {"--frames", NULL, "N", FLAG_COUNT, CLI_RENDER, ALL(frames), NULL, "a sequence of pictures or a video over one period, or from the first time to the last"},
     {"--fps", NULL, "N", FLAG_COUNT, CLI_RENDER, ALL(fps), NULL, "frames per second of a video (25)"},
+    {"--backdrop", NULL, NULL, FLAG_SWITCH, CLI_RENDER, ALL(backdrop), NULL, "of velocity volumes and the scene flow: the highest speeds of the beat behind the lines, the vessel's outline around"},
+    {"--legend", NULL, "SIDE", FLAG_CHOICE, CLI_RENDER, ALL(legend), "off|left|right|bottom", "scale of the attribute's colours in the picture: off, left, right or bottom (off)"},
+    {"--legend-title", NULL, "TEXT", FLAG_TEXT, CLI_RENDER, ALL(legend_title), NULL, "above the scale (the attribute's name, and its unit if known)"},
     {"--dump", NULL, "FILE.exr", FLAG_TEXT, CLI_RENDER, ALL(dump), NULL, "every image of the frame graph as 32-bit floats (OpenEXR)"},
     {"--timings", NULL, "FILE.json", FLAG_TEXT, CLI_RENDER, ALL(timings), NULL, "milliseconds of the frame and of each pass"},
+    {"--columns", NULL, "N", FLAG_COUNT, CLI_SHEET, ALL(columns), NULL, "pictures in a row (3)"},
+    {"--title", NULL, "TEXT", FLAG_TEXT, CLI_SHEET, ALL(title), NULL, "above all pictures"},
+    {"--note", NULL, "TEXT", FLAG_TEXT, CLI_SHEET, ALL(note), NULL, "below all pictures"},
+    {"--widest", NULL, "N", FLAG_COUNT, CLI_SHEET, ALL(widest), NULL, "pixels; wider pictures shrink by a whole factor (no limit)"},
     {"--json", NULL, NULL, FLAG_SWITCH, CLI_INFO | CLI_COMPARE | CLI_FLOW, ALL(json), NULL, "one JSON object on standard output"},
-    {"--help", "-h", NULL, FLAG_SWITCH, ANY, ALL(help), NULL, "this text"},
+    {"--help", "-h", NULL, FLAG_SWITCH, ANY | CLI_SHEET, ALL(help), NULL, "this text"},
     {"--color", NULL, "#rrggbb", FLAG_PAINT, BOTH, FILE_(color), NULL, "or r,g,b in 0..1, direction, line or the NAME of an attribute"},
-    {"--colormap", NULL, "NAME", FLAG_CHOICE, BOTH, FILE_(colormap), "viridis|inferno|coolwarm|gray", "of attributes: viridis (default), inferno, coolwarm or gray"},
-    {"--range", NULL, "A,B", FLAG_RANGE, BOTH, FILE_(range), NULL, "values at both ends of the colour map (those of the data)"},
+    {"--colormap", NULL, "NAME", FLAG_CHOICE, BOTH, FILE_(colormap), COLOUR_MAPS, "of attributes: " COLOUR_MAPS " (viridis)"},
+    {"--range", NULL, "A,B", FLAG_RANGE, BOTH, FILE_(range), NULL, "values at both ends of the colour map, or percentiles of all (2%,98%)"},
     {"--every", NULL, "N", FLAG_COUNT, TRACE, FILE_(every), NULL, "keep each N-th line"},
     {"--min-length", NULL, "MM", FLAG_LENGTH, TRACE, FILE_(min_length), NULL, "drop shorter lines (files: none; of a volume: shorter than two voxels)"},
     {"--bundle", NULL, "NAME", FLAG_TEXT, BOTH, FILE_(bundle), NULL, "keep the lines of this group (TRX group, TT cluster)"},
@@ -174,6 +181,25 @@ bool cli_parse_color(const char *text, double color[4]) {
     }
     memcpy(color, c, sizeof c);
     return true;
+}
+
+/* "0,2.5", "2%,98%", "0,99%": two ends that are not the same. */
+static bool parse_range(const char *text, colour_end ends[2]) {
+    const char *comma = strchr(text, ',');
+    for (int i = 0; i < 2 && comma; i++) {
+        char part[64];
+        const char *from = i ? comma + 1 : text;
+        size_t length = i ? strlen(from) : (size_t)(comma - text);
+        bool percent = length > 0 && from[length - 1] == '%';
+        if (length >= sizeof part)
+            return false;
+        snprintf(part, sizeof part, "%.*s", (int)(length - percent), from);
+        if (!cli_number(part, &ends[i].value) ||
+            (percent && !(ends[i].value >= 0 && ends[i].value <= 100)))
+            return false;
+        ends[i].percent = percent;
+    }
+    return comma && (ends[0].percent != ends[1].percent || ends[0].value != ends[1].value);
 }
 
 /* "align-intensity" and "align_intensity" are the same setting; -1: none. */
@@ -323,7 +349,7 @@ static bool set_flag(parser *p, const flag_row *row, const char *value) {
         ok = parse_size(value, field);
         break;
     case FLAG_RANGE:
-        ok = cli_numbers(value, field, 2) && ((double *)field)[0] != ((double *)field)[1];
+        ok = parse_range(value, field);
         break;
     case FLAG_COLOR:
         ok = cli_parse_color(value, field);
@@ -359,7 +385,7 @@ static const char *flag_name(const void *user, uint32_t index) {
         if ((flags[i].commands & p->command) && index-- == 0)
             return flags[i].name + 2;
     }
-    return p->command & (CLI_INFO | CLI_FLOW) ? NULL : setting_name(lao_lines_module(), index);
+    return !(p->command & BOTH) ? NULL : setting_name(lao_lines_module(), index);
 }
 
 static bool unknown_flag(const parser *p, const char *text, size_t length) {
@@ -375,7 +401,7 @@ static int take_flag(parser *p, int argc, char **argv, int at) {
     const char *text = argv[at], *equals = strchr(text, '=');
     size_t length = equals ? (size_t)(equals - text) : strlen(text);
     const flag_row *row = find_flag(p->command, text, length);
-    int setting = row || p->command & (CLI_INFO | CLI_FLOW) || strncmp(text, "--", 2) != 0
+    int setting = row || !(p->command & BOTH) || strncmp(text, "--", 2) != 0
                       ? -1
                       : find_setting(text + 2, length - 2);
     if (!row && setting < 0)
@@ -404,6 +430,9 @@ static bool check(const parser *p) {
         return true;
     if (p->command == CLI_INFO && o->file_count == 0)
         return cli_fail("info: no FILE is given; write lineao info FILE...");
+    if (p->command == CLI_SHEET && (o->file_count == 0 || !o->out))
+        return cli_fail("sheet: %s; write lineao sheet CAPTION=FILE.png... -o out.png",
+                        o->out ? "no picture is given" : "no output is asked for");
     if (p->command == CLI_FLOW && (o->file_count == 0 || !o->out))
         return cli_fail("flow: %s; write lineao flow VOLUME... -o lines.vtp",
                         o->file_count ? "no output is asked for" : "no VOLUME is given");
@@ -441,7 +470,10 @@ bool cli_parse(cli_command_bit command, int argc, char **argv, cli_options *out)
     out->time = NAN;
     out->size[0] = command == CLI_COMPARE ? 640 : 1280;
     out->size[1] = command == CLI_COMPARE ? 480 : 960;
+    out->legend = "off";
     out->all.colormap = "viridis";
+    out->all.range[0] = (colour_end){2, true};
+    out->all.range[1] = (colour_end){98, true};
     out->flow.threshold = -1;
     out->all.min_length = -1;
     cli_parse_color("#f4f4f2", out->background);
@@ -512,6 +544,6 @@ void cli_print_flags(cli_command_bit command) {
     print_rows(command, false, true, "Velocity volumes");
     print_rows(command, true, false,
                "Of a FILE: before the first FILE for all FILEs, after a FILE for it alone");
-    if (command & CLI_COMPARE || command & CLI_RENDER)
+    if (command & BOTH)
         print_settings();
 }

@@ -3,6 +3,7 @@
 #ifndef LINEAO_CLI_ARGUMENTS_H
 #define LINEAO_CLI_ARGUMENTS_H
 
+#include "colour.h"
 #include "lineao.h"
 
 #include <stdbool.h>
@@ -13,16 +14,17 @@ typedef enum cli_command_bit {
     CLI_INFO = 1,
     CLI_RENDER = 2,
     CLI_COMPARE = 4,
-    CLI_FLOW = 8
+    CLI_FLOW = 8,
+    CLI_SHEET = 16
 } cli_command_bit;
 
 /* One FILE and the flags that hold for it. */
 typedef struct cli_source {
-    const char *path; /* NULL: the embedded scene */
+    const char *path; /* NULL: the embedded scene; of a sheet: "CAPTION=FILE.png" */
     lao_settings settings;
     const char *color; /* NULL: automatic */
     const char *colormap;
-    double range[2]; /* of the attribute; equal: from the data */
+    colour_end range[2]; /* values at both ends of the colour map */
     uint32_t every;
     double min_length; /* mm; negative: none is given */
     const char *bundle;
@@ -45,11 +47,13 @@ typedef struct cli_options {
     cli_source *files; /* owned */
     uint32_t file_count;
     const char *scene, *out, *dump, *timings, *backend, *camera, *save_camera, *view;
-    uint32_t lines, frames, fps; /* 0: not given */
+    const char *legend, *legend_title;            /* "off" or a side; NULL: name and unit */
+    const char *title, *note;                     /* of a sheet */
+    uint32_t lines, frames, fps, columns, widest; /* 0: not given */
     uint32_t size[2];
     double time; /* ms; NaN: not given */
     double background[4];
-    bool ortho, json, help;
+    bool ortho, json, backdrop, help;
     cli_flow_options flow;
     const char *flow_flag; /* the last flag in `flow` that was given, or NULL */
 } cli_options;

@@ -7,6 +7,7 @@
 int cli_info(const cli_options *options);
 int cli_render(const cli_options *options);
 int cli_compare(const cli_options *options);
+int cli_sheet_command(const cli_options *options);
 int cli_flow(const cli_options *options);
 
 #endif

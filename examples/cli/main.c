@@ -76,6 +76,9 @@ static const command_row commands[] = {
      "  lineao flow 4d.h5 --streamlines --at 120 -o peak.vtp\n"
      "  lineao render aorta.vtp --color speed -o aorta.png     look at them\n",
      flow_about},
+    {"sheet", CLI_SHEET, cli_sheet_command, "[CAPTION=]FILE.png... -o out.png",
+     "put pictures with captions on one sheet",
+     "  lineao sheet 'no AO=a.png' 'AO=b.png' --columns 2 -o ab.png\n", NULL},
     {"bench", 0, NULL, "[--json]", "time every pass and frame of fixed scenes on both backends", "",
      NULL},
 };

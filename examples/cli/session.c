@@ -111,6 +111,7 @@ static bool upload(cli_session *session, const cli_scene *scene) {
         desc.times = set->times;
         desc.colors = set->colors;
         memcpy(desc.color, set->color, sizeof desc.color);
+        memset(&session->sets[i], 0, sizeof session->sets[i]);
         session->sets[i].settings = &set->settings;
         if (lao_lines_create(session->context, &desc, &session->sets[i].lines) != LAO_OK)
             return false;
