@@ -13,11 +13,15 @@ typedef struct cli_set {
     float color[4];     /* all zero: lineao's sand */
     const float *times; /* in `lines`, or NULL */
     lao_settings settings;
+    /* Of a vessel tree; its `lines` are points alone, which tell how far it reaches. */
+    const lao_object_desc *object;  /* NULL: a set of lines */
+    const void *module_settings[1]; /* of cli_scene.module */
 } cli_set;
 
 /* Everything that is drawn. Points are relative to `origin`, which is the first set's. */
 typedef struct cli_scene {
-    cli_set *sets; /* owned */
+    const lao_module *module; /* NULL: lines alone */
+    cli_set *sets;            /* owned */
     uint32_t count;
     double origin[3];
     float direction[3], up[3]; /* of the automatic camera */
