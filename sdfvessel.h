@@ -76,6 +76,8 @@ extern "C" {
     X(GRID_LISTS, LAO_ERROR_INVALID_ARGUMENT,                                                      \
       "more than 2^24 segments or entries of cell lists; fewer cells make shorter lists")          \
     X(GRID_TREE, LAO_ERROR_INVALID_ARGUMENT, "the grid was built from another tree")               \
+    X(SHAPES, LAO_ERROR_INVALID_ARGUMENT,                                                          \
+      "a tree takes at most 64 shapes, of finite numbers, whose samples exist")                    \
     X(RADIUS_MISSING, LAO_OK,                                                                      \
       "nodes have no radius (negative, no number or beyond 1e9 mm): 0 is taken")                   \
     X(RADIUS_ZERO, LAO_OK, "nodes have radius 0")                                                  \
@@ -372,15 +374,26 @@ SDV_API void sdv_trace(const sdv_grid *grid, const sdv_ray *ray, sdv_hit *hit);
  * what the field gives for free */
 
 enum { SDV_UNION = 0, SDV_INTERSECTION = 1, SDV_SUBTRACTION = 2 };
-enum { SDV_SHAPE_BALL = 0, SDV_SHAPE_BOX = 1, SDV_SHAPE_PLANE = 2 };
+enum { SDV_SHAPE_BALL = 0, SDV_SHAPE_BOX = 1, SDV_SHAPE_PLANE = 2, SDV_SHAPE_FIELD = 3 };
 
-/* Traces the tree combined with shapes, one after the other (L19 Fig. 11: max(a, -b) and so on):
-   hit->cone is SDV_NONE - 1 where the surface is a shape's, and `shape` (Optional) says which; its
-   normal is the shape's, turned inwards where it cuts. No d_min. Thread: any. */
+/* What a tree is combined with, one after the other (struct sdv_shape, below). `fields` holds the
+   samples of the shapes of kind SDV_SHAPE_FIELD: signed distances, x fastest, none farther from the
+   next than their places are. */
 struct sdv_shape;
+typedef struct sdv_shapes {
+    const struct sdv_shape *shapes;
+    uint32_t count; /* at most SDV_MOST_SHAPES */
+    const float *fields;
+    uint32_t field_count; /* samples of all */
+} sdv_shapes;
+#define SDV_MOST_SHAPES 64u
+
+/* Traces the tree combined with shapes (NULL: none; L19 Fig. 11: max(a, -b) and so on): hit->cone
+   is SDV_NONE - 1 where the surface is a shape's, and `shape` (Optional) says which; its normal is
+   the shape's, turned inwards where it cuts. No d_min. Thread: any. */
 #define SDV_CUT_CONE (SDV_NONE - 1u)
-SDV_API void sdv_trace_shapes(const sdv_grid *grid, const struct sdv_shape *shapes, uint32_t count,
-                              const sdv_ray *ray, sdv_hit *hit, uint32_t *shape);
+SDV_API void sdv_trace_shapes(const sdv_grid *grid, const sdv_shapes *shapes, const sdv_ray *ray,
+                              sdv_hit *hit, uint32_t *shape);
 /* Light that reaches p, 0 .. 1, from the unit direction `light`, past what the field says is near
    the way: 1 / hardness is the light's radius as seen from p. `bias` (mm) is the start, off the
    surface. */
@@ -482,8 +495,9 @@ SDV_API const lao_module *sdv_module(void);
    must not move, and both must live until lao_object_create or _update returns. */
 typedef struct sdv_object {
     lao_object_desc desc;
-    lao_object_buffer buffers[5];
+    lao_object_buffer buffers[7];
     lao_v4 box[2];
+    lao_v4 shapes[1 + 4 * SDV_MOST_SHAPES];
     uint8_t *colors; /* private */
     lao_allocator allocator;
 } sdv_object;
@@ -493,6 +507,11 @@ typedef struct sdv_object {
    NULL_ARGUMENT, MEMORY. */
 SDV_API lao_result sdv_object_make(const sdv_host *host, const sdv_grid *grid,
                                    const uint8_t *colors, sdv_object *object);
+/* Combines it with shapes, before it is created or in an update. `colors`: (Optional) red, green,
+   blue of the surface of each, display values. `shapes->fields` is referred to. Fails with
+   NULL_ARGUMENT, SHAPES. */
+SDV_API lao_result sdv_object_shapes(const sdv_host *host, const sdv_shapes *shapes,
+                                     const float *colors, sdv_object *object);
 SDV_API void sdv_object_free(sdv_object *object);
 
 #ifdef __cplusplus
@@ -928,7 +947,8 @@ LAO_FN float sdv_polish(float t, float distance, lao_v3 gradient, lao_v3 directi
 }
 /* ---- shapes and Boolean operations */
 /* kind: SDV_SHAPE_...; ball: a = centre, radius; box: a = centre, b = half its size; plane: a =
-   unit normal, offset, inside where normal . p < offset. */
+   unit normal, offset, inside where normal . p < offset; field: a = place of the first sample,
+   distance of neighbours; b = samples along each axis, 2 or more, and where the first one is. */
 struct sdv_shape {
     lao_v4 a, b;
     lao_int kind, operation;
@@ -943,12 +963,71 @@ typedef struct sdv_shape sdv_shape;
 #define SDV_SHAPE_BALL 0
 #define SDV_SHAPE_BOX 1
 #define SDV_SHAPE_PLANE 2
+#define SDV_SHAPE_FIELD 3
 #endif
 LAO_FN lao_v3 sdv_box_apart(lao_v3 p, lao_v4 centre, lao_v4 half_size) {
     LAO_EXACT float x = lao_abs(p.x - centre.x) - half_size.x;
     LAO_EXACT float y = lao_abs(p.y - centre.y) - half_size.y;
     LAO_EXACT float z = lao_abs(p.z - centre.z) - half_size.z;
     return lao_v3_make(x, y, z);
+}
+/* A place among the samples of a field: its lowest neighbour, the place between that and the next
+   along each axis, 0 .. 1, and how far outside all samples it is, mm. */
+struct sdv_lattice {
+    lao_v3 part;
+    lao_int at, row, layer; /* first sample; what leads to the next along y and z */
+    float apart;
+};
+#ifndef LAO_GLSL
+typedef struct sdv_lattice sdv_lattice;
+#endif
+LAO_FN lao_v2 sdv_lattice_axis(float p, float low, float cell, float count) {
+    LAO_EXACT float at = lao_min(lao_max((p - low) / cell, 0.0f), count - 1.0f);
+    LAO_EXACT float whole = lao_min(lao_floor(at), count - 2.0f);
+    LAO_EXACT float part = at - whole;
+    return lao_v2_make(whole, part);
+}
+LAO_FN sdv_lattice sdv_lattice_at(lao_v3 p, sdv_shape shape) {
+    lao_v2 x = sdv_lattice_axis(p.x, shape.a.x, shape.a.w, shape.b.x);
+    lao_v2 y = sdv_lattice_axis(p.y, shape.a.y, shape.a.w, shape.b.y);
+    lao_v2 z = sdv_lattice_axis(p.z, shape.a.z, shape.a.w, shape.b.z);
+    sdv_lattice r;
+    r.part = lao_v3_make(x.y, y.y, z.y);
+    r.row = LAO_I(shape.b.x);
+    r.layer = r.row * LAO_I(shape.b.y);
+    r.at = LAO_I(shape.b.w) + LAO_I(x.x) + r.row * LAO_I(y.x) + r.layer * LAO_I(z.x);
+    LAO_EXACT float ex = shape.a.x + (shape.b.x - 1.0f) * shape.a.w;
+    LAO_EXACT float ey = shape.a.y + (shape.b.y - 1.0f) * shape.a.w;
+    LAO_EXACT float ez = shape.a.z + (shape.b.z - 1.0f) * shape.a.w;
+    LAO_EXACT float ox = lao_max(lao_max(shape.a.x - p.x, p.x - ex), 0.0f);
+    LAO_EXACT float oy = lao_max(lao_max(shape.a.y - p.y, p.y - ey), 0.0f);
+    LAO_EXACT float oz = lao_max(lao_max(shape.a.z - p.z, p.z - ez), 0.0f);
+    LAO_EXACT float apart = lao_sqrt(lao_v3_dot(lao_v3_make(ox, oy, oz), lao_v3_make(ox, oy, oz)));
+    r.apart = apart;
+    return r;
+}
+/* Trilinear value (w) and its gradient (x, y, z) from the eight samples around: low z, then high;
+   of each (0, 0), (1, 0), (0, 1), (1, 1). */
+LAO_FN lao_v4 sdv_lattice_value(lao_v3 part, lao_v4 low, lao_v4 high) {
+    LAO_EXACT float x0 = low.x + (low.y - low.x) * part.x;
+    LAO_EXACT float x1 = low.z + (low.w - low.z) * part.x;
+    LAO_EXACT float x2 = high.x + (high.y - high.x) * part.x;
+    LAO_EXACT float x3 = high.z + (high.w - high.z) * part.x;
+    LAO_EXACT float y0 = x0 + (x1 - x0) * part.y;
+    LAO_EXACT float y1 = x2 + (x3 - x2) * part.y;
+    LAO_EXACT float value = y0 + (y1 - y0) * part.z;
+    LAO_EXACT float gz = y1 - y0;
+    LAO_EXACT float gy = (x1 - x0) + ((x3 - x2) - (x1 - x0)) * part.z;
+    LAO_EXACT float d0 = (low.y - low.x) + ((low.w - low.z) - (low.y - low.x)) * part.y;
+    LAO_EXACT float d1 = (high.y - high.x) + ((high.w - high.z) - (high.y - high.x)) * part.y;
+    LAO_EXACT float gx = d0 + (d1 - d0) * part.z;
+    return lao_v4_make(gx, gy, gz, value);
+}
+/* A lower bound of the distance to where the trilinear value is 0: no slope of it is above sqrt(3);
+   outside, the shape is no nearer than the nearest place inside is to it. */
+LAO_FN float sdv_lattice_distance(sdv_lattice at, float value) {
+    LAO_EXACT float d = 0.57f * value;
+    return lao_max(d, at.apart > 0.0f ? at.apart : d);
 }
 LAO_FN float sdv_shape_distance(lao_v3 p, sdv_shape shape) {
     if (shape.kind == SDV_SHAPE_PLANE) {
@@ -1016,6 +1095,23 @@ LAO_FN sdv_solid sdv_solid_add(sdv_solid s, float distance, lao_int operation, l
         r.part = part;
     }
     return r;
+}
+
+/* Part of a ray in which a tree with shapes is looked for: only a union adds to the tree's box. */
+LAO_FN lao_v2 sdv_solid_span(lao_v2 box, bool united) {
+    if (united) {
+        return lao_v2_make(0.0f, SDV_FAR);
+    }
+    return box;
+}
+/* A lower bound of the tree's distance at p, exact close to the surface and inside, from the
+   least of its cell's list and how far the cell is from any. */
+LAO_FN float sdv_tree_bound(float least, bool occupied, float far_step, float outside, float cell) {
+    float bound = far_step;
+    if (occupied) {
+        bound = lao_min(least, sdv_near_reach(cell));
+    }
+    return outside > 0.0f ? lao_max(bound, outside) : bound;
 }
 
 /* ---- outlines and shadows from d_min (L19 5 with METHODS 5.4); lengths in mm */
@@ -3524,38 +3620,61 @@ SDV_API void sdv_trace(const sdv_grid *grid, const sdv_ray *ray, sdv_hit *hit) {
 /* A lower bound of the tree's distance, exact close to the surface and inside. */
 static float sdv__tree_bound(const sdv_grid *g, lao_v3 p, uint32_t *cone) {
     const lao_v4 *cell = sdv__cell_at(g, p);
-    float bound = cell->z, outside;
-    if (cell->w > 0.0f) {
-        bound = lao_min(sdv__list_distance(g, cell, p, cone), sdv_near_reach(g->cell));
-    }
-    outside = sdv_box_distance(p, sdv__grid_box(g));
-    return outside > 0.0f ? lao_max(bound, outside) : bound;
+    float least = cell->w > 0.0f ? sdv__list_distance(g, cell, p, cone) : SDV_FAR;
+    return sdv_tree_bound(least, cell->w > 0.0f, cell->z, sdv_box_distance(p, sdv__grid_box(g)),
+                          g->cell);
 }
-static sdv_solid sdv__solid_at(const sdv_grid *g, const sdv_shape *shapes, uint32_t count, lao_v3 p,
+static lao_v4 sdv__four(const float *at, lao_int row) {
+    return lao_v4_make(at[0], at[1], at[row], at[row + 1]);
+}
+static lao_v4 sdv__field_value(const sdv_shapes *shapes, const sdv_lattice *l) {
+    const float *at = shapes->fields + l->at;
+    return sdv_lattice_value(l->part, sdv__four(at, l->row), sdv__four(at + l->layer, l->row));
+}
+static float sdv__shape_distance(const sdv_shapes *shapes, uint32_t i, lao_v3 p) {
+    sdv_lattice l;
+    if (shapes->shapes[i].kind != SDV_SHAPE_FIELD) {
+        return sdv_shape_distance(p, shapes->shapes[i]);
+    }
+    l = sdv_lattice_at(p, shapes->shapes[i]);
+    return sdv_lattice_distance(l, sdv__field_value(shapes, &l).w);
+}
+static lao_v3 sdv__shape_gradient(const sdv_shapes *shapes, lao_int i, lao_v3 p) {
+    sdv_lattice l;
+    lao_v4 v;
+    if (shapes->shapes[i].kind != SDV_SHAPE_FIELD) {
+        return sdv_shape_gradient(p, shapes->shapes[i]);
+    }
+    l = sdv_lattice_at(p, shapes->shapes[i]);
+    v = sdv__field_value(shapes, &l);
+    return lao_v3_unit(lao_v3_make(v.x, v.y, v.z), lao_v3_make(0.0f, 0.0f, 1.0f));
+}
+static sdv_solid sdv__solid_at(const sdv_grid *g, const sdv_shapes *shapes, lao_v3 p,
                                uint32_t *cone) {
     sdv_solid s = sdv_solid_start(sdv__tree_bound(g, p, cone));
     uint32_t i;
-    for (i = 0; i < count; i++) {
-        s = sdv_solid_add(s, sdv_shape_distance(p, shapes[i]), shapes[i].operation, (lao_int)i);
+    for (i = 0; i < shapes->count; i++) {
+        s = sdv_solid_add(s, sdv__shape_distance(shapes, i, p), shapes->shapes[i].operation,
+                          (lao_int)i);
     }
     return s;
 }
-static lao_v3 sdv__solid_gradient(const sdv_grid *g, const sdv_shape *shapes, const sdv_solid *s,
+static lao_v3 sdv__solid_gradient(const sdv_grid *g, const sdv_shapes *shapes, const sdv_solid *s,
                                   lao_v3 p, uint32_t cone) {
     if (s->part >= 0) {
-        return lao_v3_scale(sdv_shape_gradient(p, shapes[s->part]), s->side);
+        return lao_v3_scale(sdv__shape_gradient(shapes, s->part, p), s->side);
     }
     return sdv_round_cone_gradient(p, g->cones[2 * (size_t)cone], g->cones[2 * (size_t)cone + 1]);
 }
-static void sdv__solid_land(const sdv_grid *g, const sdv_shape *shapes, uint32_t count,
-                            const sdv_ray *ray, float t, sdv_hit *hit, uint32_t *shape) {
+static void sdv__solid_land(const sdv_grid *g, const sdv_shapes *shapes, const sdv_ray *ray,
+                            float t, sdv_hit *hit, uint32_t *shape) {
     lao_v3 gradient;
     int i;
     for (i = 0; i <= SDV_POLISH_ROUNDS; i++) {
         uint32_t cone = 0;
         sdv_solid s;
         hit->position = lao_v3_along(ray->origin, ray->direction, t);
-        s = sdv__solid_at(g, shapes, count, hit->position, &cone);
+        s = sdv__solid_at(g, shapes, hit->position, &cone);
         gradient = sdv__solid_gradient(g, shapes, &s, hit->position, cone);
         hit->cone = s.part >= 0 ? SDV_CUT_CONE : cone;
         hit->normal = hit->inside ? lao_v3_scale(gradient, -1.0f) : gradient;
@@ -3566,26 +3685,40 @@ static void sdv__solid_land(const sdv_grid *g, const sdv_shape *shapes, uint32_t
         t = sdv_polish(t, s.distance, gradient, ray->direction, g->cell);
     }
 }
+static bool sdv__united(const sdv_shapes *shapes) {
+    uint32_t i;
+    for (i = 0; i < shapes->count; i++) {
+        if (shapes->shapes[i].operation == SDV_UNION) {
+            return true;
+        }
+    }
+    return false;
+}
 
-SDV_API void sdv_trace_shapes(const sdv_grid *grid, const sdv_shape *shapes, uint32_t count,
-                              const sdv_ray *ray, sdv_hit *hit, uint32_t *shape) {
-    float t = 0.0f;
+SDV_API void sdv_trace_shapes(const sdv_grid *grid, const sdv_shapes *shapes, const sdv_ray *ray,
+                              sdv_hit *hit, uint32_t *shape) {
+    static const sdv_shapes none = {NULL, 0, NULL, 0};
+    lao_v2 span = sdv_ray_box(ray->origin, ray->direction, sdv__grid_box(grid));
     uint32_t cone = 0, i;
+    float t;
+    shapes = shapes ? shapes : &none;
+    span = sdv_solid_span(span, sdv__united(shapes));
+    t = span.x;
     memset(hit, 0, sizeof *hit);
     hit->cone = SDV_NONE;
     hit->d_min = SDV_FAR;
     if (shape) {
         *shape = SDV_NONE;
     }
-    for (i = 0; i < SDV_MAX_STEPS && t < SDV_FAR; i++) {
+    for (i = 0; i < SDV_MAX_STEPS && t <= span.y; i++) {
         lao_v3 p = lao_v3_along(ray->origin, ray->direction, t);
-        sdv_solid s = sdv__solid_at(grid, shapes, count, p, &cone);
+        sdv_solid s = sdv__solid_at(grid, shapes, p, &cone);
         float left;
         hit->inside = i == 0 ? s.distance < 0.0f : hit->inside;
         left = hit->inside ? -s.distance : s.distance;
         hit->steps++;
         if (left < sdv_hit_distance(grid->cell)) {
-            sdv__solid_land(grid, shapes, count, ray, t, hit, shape);
+            sdv__solid_land(grid, shapes, ray, t, hit, shape);
             return;
         }
         t += left;
@@ -4095,11 +4228,13 @@ SDV_API lao_result sdv_pull_push(const sdv_host *host, const sdv_pull_push_desc 
 #define SDV__WRITE(image) {image, LAO_LEVEL_SAME, 0, LAO_PHASE_THIS, LAO_LOAD_DISCARD}
 #define SDV__READ(image) {image, LAO_LEVEL_SAME, 0, LAO_PHASE_THIS, LAO_LOAD_DISCARD}
 #define SDV__KEEP(image) {image, LAO_LEVEL_SAME, 0, LAO_PHASE_THIS, LAO_LOAD_KEEP}
-#define SDV__WITH_TREE {{"#vessel_cells", '>', 0}}
+#define SDV__WITH_TREE {{"#vessel_cells", '>', 0}, {"#vessel_shapes", '=', 0}}
+#define SDV__WITH_SHAPES {{"#vessel_cells", '>', 0}, {"#vessel_shapes", '>', 0}}
 
 static const lao_buffer_row sdv__buffers[] = {
     {"vessel_box", LAO_FORMAT_RGBA32F}, {"vessel_cells", LAO_FORMAT_RGBA32F}, {"vessel_ids", LAO_FORMAT_R32F},
-    {"vessel_cones", LAO_FORMAT_RGBA32F}, {"vessel_colors", LAO_FORMAT_RGBA8}
+    {"vessel_cones", LAO_FORMAT_RGBA32F}, {"vessel_colors", LAO_FORMAT_RGBA8},
+    {"vessel_shapes", LAO_FORMAT_RGBA32F}, {"vessel_fields", LAO_FORMAT_R32F}
 };
 
 static const lao_image_row sdv__images[] = {
@@ -4112,10 +4247,19 @@ static const lao_pass_row sdv__passes[] = {
     {"vessel_trace", LAO_PASS_FULLSCREEN, "vessel_trace", 0, LAO_STAGE_DRAW, LAO_SCOPE_PER_SET, LAO_REPEAT_NONE, NULL, LAO_BLEND_NONE, LAO_DEPTH_NONE, LAO_CULL_NONE, SDV__WITH_TREE,
      {SDV__WRITE("vessel_position"), SDV__WRITE("vessel_normal"), SDV__WRITE("vessel_ray")},
      {SDV__READ("#vessel_box"), SDV__READ("#vessel_cells"), SDV__READ("#vessel_ids"), SDV__READ("#vessel_cones")}},
+    {"vessel_carve", LAO_PASS_FULLSCREEN, "vessel_carve", 0, LAO_STAGE_DRAW, LAO_SCOPE_PER_SET, LAO_REPEAT_NONE, NULL, LAO_BLEND_NONE, LAO_DEPTH_NONE, LAO_CULL_NONE, SDV__WITH_SHAPES,
+     {SDV__WRITE("vessel_position"), SDV__WRITE("vessel_normal"), SDV__WRITE("vessel_ray")},
+     {SDV__READ("#vessel_box"), SDV__READ("#vessel_cells"), SDV__READ("#vessel_ids"), SDV__READ("#vessel_cones"), SDV__READ("#vessel_shapes"), SDV__READ("#vessel_fields")}},
     {"vessel_shade", LAO_PASS_FULLSCREEN, "vessel_shade", 0, LAO_STAGE_SHADE, LAO_SCOPE_PER_SET, LAO_REPEAT_NONE, NULL, LAO_BLEND_NONE, LAO_DEPTH_NEARER, LAO_CULL_NONE, SDV__WITH_TREE,
      {SDV__KEEP("shaded"), SDV__KEEP("zbuffer")},
      {SDV__READ("vessel_position"), SDV__READ("vessel_normal"), SDV__READ("vessel_ray"), SDV__READ("#vessel_colors"),
-      SDV__READ("#vessel_box"), SDV__READ("#vessel_cells"), SDV__READ("#vessel_ids"), SDV__READ("#vessel_cones")}}
+      SDV__READ("#vessel_box"), SDV__READ("#vessel_cells"), SDV__READ("#vessel_ids"), SDV__READ("#vessel_cones"),
+      SDV__READ("#vessel_shapes"), SDV__READ("#vessel_fields")}},
+    {"vessel_shade_cut", LAO_PASS_FULLSCREEN, "vessel_shade", 1, LAO_STAGE_SHADE, LAO_SCOPE_PER_SET, LAO_REPEAT_NONE, NULL, LAO_BLEND_NONE, LAO_DEPTH_NEARER, LAO_CULL_NONE, SDV__WITH_SHAPES,
+     {SDV__KEEP("shaded"), SDV__KEEP("zbuffer")},
+     {SDV__READ("vessel_position"), SDV__READ("vessel_normal"), SDV__READ("vessel_ray"), SDV__READ("#vessel_colors"),
+      SDV__READ("#vessel_box"), SDV__READ("#vessel_cells"), SDV__READ("#vessel_ids"), SDV__READ("#vessel_cones"),
+      SDV__READ("#vessel_shapes"), SDV__READ("#vessel_fields")}}
 };
 
 static const lao_setting_row sdv__settings[] = {
@@ -4187,6 +4331,55 @@ SDV_API lao_result sdv_object_make(const sdv_host *host, const sdv_grid *grid,
             object->desc.bounds[0][k] = i ? lao_min(object->desc.bounds[0][k], low) : low;
             object->desc.bounds[1][k] = i ? lao_max(object->desc.bounds[1][k], high) : high;
         }
+    }
+    return LAO_OK;
+}
+
+static bool sdv__shape_fits(const sdv_shape *s, uint32_t field_count) {
+    const float *v = &s->a.x, *w = &s->b.x;
+    double size = (double)s->b.x * (double)s->b.y * (double)s->b.z;
+    int i;
+    for (i = 0; i < 4; i++) {
+        if (!(fabsf(v[i]) <= 1e9f && fabsf(w[i]) <= 1e9f)) {
+            return false;
+        }
+    }
+    return s->kind != SDV_SHAPE_FIELD ||
+           (s->a.w > 0.0f && s->b.x >= 2.0f && s->b.y >= 2.0f && s->b.z >= 2.0f && s->b.w >= 0.0f &&
+            (double)s->b.w + size <= field_count);
+}
+
+SDV_API lao_result sdv_object_shapes(const sdv_host *host, const sdv_shapes *shapes,
+                                     const float *colors, sdv_object *object) {
+    uint32_t i;
+    if (!object || !shapes || (shapes->count && !shapes->shapes)) {
+        return sdv__fail(host, SDV_LOG_NULL_ARGUMENT, "sdv_object_shapes");
+    }
+    if (shapes->count > SDV_MOST_SHAPES || (shapes->field_count && !shapes->fields) ||
+        shapes->field_count > 1u << 24) {
+        return sdv__fail(host, SDV_LOG_SHAPES, "%u shapes", shapes->count);
+    }
+    for (i = 0; i < shapes->count; i++) {
+        if (!sdv__shape_fits(&shapes->shapes[i], shapes->field_count)) {
+            return sdv__fail(host, SDV_LOG_SHAPES, "shape %u", i);
+        }
+    }
+    object->shapes[0] =
+        lao_v4_make((float)shapes->count, sdv__united(shapes) ? 1.0f : 0.0f, 0.0f, 0.0f);
+    for (i = 0; i < shapes->count; i++) {
+        const sdv_shape *s = &shapes->shapes[i];
+        lao_v4 *to = object->shapes + 1 + 4 * i;
+        to[0] = s->a;
+        to[1] = s->b;
+        to[2] = lao_v4_make((float)s->kind, (float)s->operation, 0.0f, 0.0f);
+        to[3] = colors ? lao_v4_make(colors[3 * i], colors[3 * i + 1], colors[3 * i + 2], 1.0f)
+                       : lao_v4_make(0.93f, 0.86f, 0.72f, 1.0f);
+    }
+    sdv__object_buffer(object, 5, object->shapes, 1 + 4 * shapes->count);
+    object->desc.buffer_count = 6;
+    if (shapes->field_count) {
+        sdv__object_buffer(object, 6, shapes->fields, shapes->field_count);
+        object->desc.buffer_count = 7;
     }
     return LAO_OK;
 }

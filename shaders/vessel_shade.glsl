@@ -8,16 +8,23 @@ LAO_TEX(4, samplerBuffer, box)
 LAO_TEX(5, samplerBuffer, cells)
 LAO_TEX(6, samplerBuffer, ids)
 LAO_TEX(7, samplerBuffer, cones)
+LAO_TEX(8, samplerBuffer, shapes) /* with variant 1 */
+LAO_TEX(9, samplerBuffer, fields)
 LAO_CONSTANT(0, lao_constant_near_miss)
 LAO_CONSTANT(1, lao_constant_surface_shininess)
 LAO_CONSTANT(2, lao_constant_field_occlusion)
+LAO_CONSTANT(3, lao_constant_variant) /* 1: with shapes */
 
 LAO_OUT(0, vec4, out_color)
 
 #ifdef LAO_FRAGMENT
 /* Signed distance at p, from the list of its cell. */
 float field_at(sdv_box b, lao_v3 p) {
-    return sdv_near_at(cells, ids, cones, b, texelFetch(cells, sdv_cell_at(b, p)), p, lao_v3_make(0.0, 0.0, 1.0)).distance;
+    float d = sdv_near_at(cells, ids, cones, b, texelFetch(cells, sdv_cell_at(b, p)), p, lao_v3_make(0.0, 0.0, 1.0)).distance;
+    if (lao_constant_variant != 0) {
+        d = sdv_solid_add_all(shapes, fields, sdv_solid_start(d), p).distance;
+    }
+    return d;
 }
 
 /* Openness of p along its normal: sdv_openness. */
@@ -39,7 +46,7 @@ void main() {
     lao_v2 slope = lao_pixel_slope(lao_frame.ray, float(pixel.x) + 0.5, float(pixel.y) + 0.5);
     lao_v3 origin = lao_ray_origin(lao_frame.world, slope, lao_frame.depth.w);
     lao_v3 direction = lao_ray_direction(lao_frame.world, slope, lao_frame.depth.w);
-    bool missed = hit.w < 0.0;
+    bool missed = hit.w == -1.0;
     bool outlined = lao_constant_near_miss != SDV_NEAR_MISS_NONE &&
                     (missed ? sdv_is_silhouette(false, n.w, lao_setting_silhouette)
                             : sdv_is_contour(n.w, lao_setting_contour));
@@ -53,9 +60,14 @@ void main() {
         out_color = vec4(0.0, 0.0, 0.0, 1.0);
         return;
     }
-    int at = 2 * int(hit.w);
-    lao_v3 color = sdv_cone_color(p, texelFetch(cones, at), texelFetch(cones, at + 1), texelFetch(colors, at).xyz,
-                                  texelFetch(colors, at + 1).xyz);
+    lao_v3 color;
+    if (lao_constant_variant != 0 && hit.w < 0.0) {
+        color = texelFetch(shapes, 4 + 4 * int(r.y)).xyz;
+    } else {
+        int at = 2 * int(hit.w);
+        color = sdv_cone_color(p, texelFetch(cones, at), texelFetch(cones, at + 1), texelFetch(colors, at).xyz,
+                               texelFetch(colors, at + 1).xyz);
+    }
     LAO_EXACT float light = 1.0;
     if (lao_constant_field_occlusion != 0) {
         light = sdv_dimmed(light, 1.0 - openness(sdv_box_fetch(box), p, n.xyz), lao_setting_occlusion_strength);

@@ -29,7 +29,7 @@ static const char *find_pattern(const char *path, size_t *length, int *digits, b
 }
 
 /* The file of one frame: the pattern filled in, or "_0007" before the extension. For free(). */
-static char *frame_path(const char *path, uint32_t frame) {
+char *cli_frame_path(const char *path, uint32_t frame) {
     size_t room = strlen(path) + 112, length = 0;
     int digits = 4;
     bool zeros = true;
@@ -132,10 +132,10 @@ static bool write_frame(const surroundings *around, cli_session *session, const 
     for (int i = 0; i < 2 && ok; i++) {
         if (!paths[i])
             continue;
-        char *numbered = frame < 0 ? NULL : frame_path(paths[i], (uint32_t)frame);
+        char *numbered = frame < 0 ? NULL : cli_frame_path(paths[i], (uint32_t)frame);
         const char *path = numbered ? numbered : paths[i];
         ok = (frame < 0 || numbered) && cli_go_on() &&
-             (i == 0 ? cli_dump(path, session, around->scene, shot)
+             (i == 0 ? cli_dump(path, session, around->scene, shot, NULL, NULL)
                      : write_picture(path, around, session, shot));
         free(numbered);
     }

@@ -15,6 +15,9 @@ typedef struct cli_set {
     const char *value;  /* name of the attribute that `colors` show, or NULL */
     double range[2];    /* its values at both ends of the source's colour map */
     lao_settings settings;
+    /* Of a vessel tree; its `lines` are points alone, which tell how far it reaches. */
+    const lao_object_desc *object;  /* NULL: a set of lines */
+    const void *module_settings[1]; /* of cli_scene.module */
 } cli_set;
 
 /* What --backdrop shows of a velocity volume: size[0] * size[1] * size[2] voxels, x fastest. */
@@ -27,7 +30,8 @@ typedef struct cli_volume {
 
 /* Everything that is drawn. Points are relative to `origin`, which is the first set's. */
 typedef struct cli_scene {
-    cli_set *sets; /* owned */
+    const lao_module *module; /* NULL: lines alone */
+    cli_set *sets;            /* owned */
     uint32_t count;
     double origin[3];
     float direction[3], up[3]; /* of the automatic camera */

@@ -136,7 +136,8 @@ static void boolean_operations(void **state) {
         sdv_hit hit;
         if (sdv_shape_distance(from, s[0]) < 0 || (n > 1 && sdv_shape_distance(from, s[1]) < 0))
             continue; /* starts inside: see below */
-        sdv_trace_shapes(&g, s, n, &ray, &hit, &which);
+        const sdv_shapes shapes = {s, n, NULL, 0};
+        sdv_trace_shapes(&g, &shapes, &ray, &hit, &which);
         double truth = solid_truth(&g, s, n, from, ray.direction, 400);
         if ((truth < 0) != (hit.cone == SDV_NONE)) {
             wrong++;
@@ -174,15 +175,16 @@ static void carving_opens_vessels(void **state) {
     sdv_ray ray = {v3(0, 1, 30), v3(0, 0, -1), 0, 0}; /* the half z > 1 goes */
     sdv_hit hit;
     uint32_t which;
-    sdv_trace_shapes(&g, &cut, 1, &ray, &hit, &which);
+    const sdv_shapes shapes = {&cut, 1, NULL, 0};
+    sdv_trace_shapes(&g, &shapes, &ray, &hit, &which);
     assert_int_equal(hit.cone, SDV_CUT_CONE);
     assert_int_equal((int32_t)hit.cone, -2);
     assert_near(hit.position.z, 1, 1e-3);
     assert_near(hit.normal.z, 1, 1e-6);
-    sdv_trace_shapes(&g, NULL, 0, &ray, &hit, NULL); /* no shapes: the tree */
+    sdv_trace_shapes(&g, NULL, &ray, &hit, NULL); /* no shapes: the tree */
     assert_near(hit.position.z, sqrt(15), 1e-3);
     ray.origin = v3(0, 0, 0); /* from inside: the wall that is left */
-    sdv_trace_shapes(&g, &cut, 1, &ray, &hit, &which);
+    sdv_trace_shapes(&g, &shapes, &ray, &hit, &which);
     assert_int_equal(hit.inside, 1);
     assert_near(hit.position.z, -4, 1e-3);
     assert_near(hit.normal.z, 1, 1e-4);

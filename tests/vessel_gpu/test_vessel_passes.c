@@ -1,5 +1,6 @@
 /* Vessel trees on both backends: every texel of the traced images is what sdv_trace gives for the
-   pixel's ray, to the bit, and the shaded picture is the shared functions'. */
+   pixel's ray (sdv_trace_shapes where it is combined with shapes), to the bit, and the shaded
+   picture is the shared functions'. */
 #include "render_host.h"
 #include "sdfvessel.h"
 
@@ -226,6 +227,95 @@ static void from_within(void **state) {
     subject_free(&tree);
 }
 
+/* The tree combined with a shape of every kind, field included, by all operations. */
+enum { SAMPLES = 5, SHAPES = 4 };
+typedef struct carving {
+    sdv_shape list[SHAPES];
+    float samples[SAMPLES * SAMPLES * SAMPLES];
+    sdv_shapes shapes;
+} carving;
+
+static void carving_make(carving *c, uint32_t count) {
+    const sdv_shape list[SHAPES] = {
+        {{2, 1, 0, 6}, {0, 0, 0, 0}, SDV_SHAPE_BALL, SDV_SUBTRACTION},
+        {{0, 0, 0, 0}, {12, 9, 14, 0}, SDV_SHAPE_BOX, SDV_INTERSECTION},
+        {{-8, -8, -8, 4}, {SAMPLES, SAMPLES, SAMPLES, 0}, SDV_SHAPE_FIELD, SDV_UNION},
+        {{0.6f, 0, 0.8f, 3}, {0, 0, 0, 0}, SDV_SHAPE_PLANE, SDV_INTERSECTION},
+    };
+    memset(c, 0, sizeof *c);
+    memcpy(c->list, list, sizeof list);
+    for (uint32_t i = 0; i < SAMPLES * SAMPLES * SAMPLES; i++) { /* of a ball of 5 mm */
+        float x = 4.0f * (float)(i % SAMPLES) - 8, y = 4.0f * (float)(i / SAMPLES % SAMPLES) - 8,
+              z = 4.0f * (float)(i / (SAMPLES * SAMPLES)) - 8;
+        c->samples[i] = sqrtf(x * x + y * y + z * z) - 5;
+    }
+    c->shapes.shapes = c->list;
+    c->shapes.count = count;
+    c->shapes.fields = c->samples;
+    c->shapes.field_count = SAMPLES * SAMPLES * SAMPLES;
+}
+
+static uint32_t check_carved(const subject *tree, const carving *c, const render_result *result,
+                             uint32_t *cut) {
+    const render_image *position = render_find(result, "vessel_position", 0);
+    const render_image *normal = render_find(result, "vessel_normal", 0);
+    const render_image *ray_image = render_find(result, "vessel_ray", 0);
+    uint32_t hits = 0, wrong = 0;
+    assert_true(position && normal && ray_image);
+    for (uint32_t i = 0; i < WIDTH * HEIGHT; i++) {
+        uint32_t x = i % WIDTH, y = i / WIDTH, shape = 0;
+        lao_v4 p = texel_of(position, x, y), n = texel_of(normal, x, y),
+               r = texel_of(ray_image, x, y), q, m, t;
+        sdv_ray ray;
+        sdv_hit hit;
+        ray_of(&result->frame, x, y, &ray);
+        sdv_trace_shapes(&tree->grid, &c->shapes, &ray, &hit, &shape);
+        bool is_cut = hit.cone == SDV_CUT_CONE;
+        q = lao_v4_make(hit.position.x, hit.position.y, hit.position.z,
+                        hit.cone == SDV_NONE ? -1.0f
+                        : is_cut             ? -2.0f
+                                             : (float)hit.cone);
+        m = lao_v4_make(hit.normal.x, hit.normal.y, hit.normal.z, hit.d_min);
+        t = lao_v4_make(hit.t, is_cut ? (float)shape : 0.0f, (float)hit.steps,
+                        hit.inside ? 1.0f : 0.0f);
+        hits += hit.cone != SDV_NONE;
+        *cut += is_cut;
+        wrong += memcmp(&p, &q, sizeof p) != 0 || memcmp(&n, &m, sizeof n) != 0 ||
+                 memcmp(&r, &t, sizeof r) != 0;
+    }
+    assert_int_equal(wrong, 0);
+    return hits;
+}
+
+static void with_shapes(void **state) {
+    subject tree;
+    scene s;
+    carving c;
+    (void)state;
+    subject_make(&tree, 60, 1);
+    for (uint32_t count = 1; count <= SHAPES; count++) {
+        render_result results[2];
+        scene_make(&s, &tree);
+        carving_make(&c, count);
+        assert_int_equal(sdv_object_shapes(NULL, &c.shapes, NULL, &tree.object), LAO_OK);
+        for (int i = 0; i < 2; i++) {
+            uint32_t cut = 0;
+            render_need(&devices[i]);
+            render_draw(&devices[i], &s.shot, &results[i]);
+            assert_in_range(check_carved(&tree, &c, &results[i], &cut), 200, WIDTH * HEIGHT);
+            assert_in_range(cut, 10, WIDTH * HEIGHT);
+        }
+        same_image("zbuffer", &results[0], &results[1]);
+        same_image("out", &results[0], &results[1]);
+        render_free(&results[0]);
+        render_free(&results[1]);
+    }
+    c.list[2].b.w = 1; /* one sample too many */
+    assert_int_equal(sdv_object_shapes(NULL, &c.shapes, NULL, &tree.object),
+                     LAO_ERROR_INVALID_ARGUMENT);
+    subject_free(&tree);
+}
+
 /* Lines and a tree hide each other by depth, in either order of the sets. */
 static void among_lines(void **state) {
     subject tree;
@@ -278,9 +368,8 @@ static int close_all(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(perspective),
-        cmocka_unit_test(orthographic),
-        cmocka_unit_test(from_within),
+        cmocka_unit_test(perspective), cmocka_unit_test(orthographic),
+        cmocka_unit_test(from_within), cmocka_unit_test(with_shapes),
         cmocka_unit_test(among_lines),
     };
     return cmocka_run_group_tests(tests, open_all, close_all);
