@@ -824,7 +824,7 @@ struct sdv_minimum {
 #ifndef LAO_GLSL
 typedef struct sdv_minimum sdv_minimum;
 #endif
-#define SDV_MINIMUM_ROUNDS 6
+#define SDV_MINIMUM_ROUNDS 3
 LAO_FN sdv_minimum sdv_minimum_start(float cone) {
     sdv_minimum r;
     r.d = SDV_FAR;
