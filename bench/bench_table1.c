@@ -73,6 +73,7 @@ static bool row_run(table *t, int row, double *milliseconds) {
     lao_settings settings = settings_of(t, row);
     lao_frame frame = t->frame;
     lao_set set;
+    memset(&set, 0, sizeof set);
     set.lines = t->lines;
     set.settings = &settings;
     frame.sets = &set;
