@@ -51,7 +51,7 @@ enum {
     LAO__GL_UNSIGNED_INT = 0x1405, LAO__GL_RED_INTEGER = 0x8D94,
     LAO__GL_FLOAT = 0x1406, LAO__GL_HALF_FLOAT = 0x140B, LAO__GL_COLOR = 0x1800, LAO__GL_DEPTH = 0x1801,
     LAO__GL_DEPTH_COMPONENT = 0x1902, LAO__GL_RED = 0x1903, LAO__GL_RGBA = 0x1908, LAO__GL_FILL = 0x1B02,
-    LAO__GL_VERSION = 0x1F02, LAO__GL_EXTENSIONS = 0x1F03, LAO__GL_NEAREST = 0x2600,
+    LAO__GL_RENDERER = 0x1F01, LAO__GL_VERSION = 0x1F02, LAO__GL_EXTENSIONS = 0x1F03, LAO__GL_NEAREST = 0x2600,
     LAO__GL_TEXTURE_MAG_FILTER = 0x2800, LAO__GL_TEXTURE_MIN_FILTER = 0x2801, LAO__GL_TEXTURE_WRAP_S = 0x2802,
     LAO__GL_TEXTURE_WRAP_T = 0x2803, LAO__GL_FUNC_ADD = 0x8006, LAO__GL_BLEND_EQUATION_RGB = 0x8009,
     LAO__GL_RGBA8 = 0x8058, LAO__GL_BLEND_DST_RGB = 0x80C8, LAO__GL_BLEND_SRC_RGB = 0x80C9,
@@ -243,6 +243,7 @@ typedef struct lao__gl {
     lao_gl_desc desc;
     const lao_host *host;
     uint32_t features;
+    int software; /* Mesa's processor that draws: lao__gl_draw_segments */
     const lao_shader *fullscreen; /* the vertex stage of shaders that have none */
     lao__gl_uint vertex_array, quads, uniforms, sampler, reader;
     size_t alignment; /* of offsets into `uniforms` */
@@ -287,6 +288,7 @@ static const char *const lao__gl_blocks[LAO__GL_BLOCK_COUNT] = {
     "lao_frame_block", "lao_settings_block", "lao_step_block"};
 
 #define LAO__GL_QUADS 16384u /* 65536 vertices: as many as 16-bit indices reach */
+#define LAO__GL_PIECES 4u    /* of LAO__GL_QUADS, before a processor catches up */
 #define LAO__GL_BUFFERS 8    /* draw buffers that every context has */
 #define LAO__GL_DRAIN 64     /* a lost context may report errors for ever */
 
@@ -932,6 +934,7 @@ static int lao__gl_has_extension(const lao__gl *gl, const char *name) {
 
 static lao_result lao__gl_load(lao__gl *gl) {
     char missing[1024];
+    const lao__gl_bool *renderer;
     int version = 0, all = lao__gl_fetch(gl, 0, "", missing, sizeof missing);
     lao_result result =
         lao__gl_version(gl, &version); /* first: an old context lacks many functions */
@@ -940,6 +943,8 @@ static lao_result lao__gl_load(lao__gl *gl) {
         return result;
     if (!all)
         return lao__gl_fail(gl->host, LAO_LOG_BACKEND_FUNCTION, "not found:%s", missing);
+    renderer = gl->GetString(LAO__GL_RENDERER);
+    gl->software = renderer && strstr((const char *)renderer, "llvmpipe") != NULL;
     for (i = 0; i < sizeof lao__gl_features / sizeof lao__gl_features[0]; i++) {
         const lao__gl_feature *row = &lao__gl_features[i];
         int core = version >= row->version;
@@ -1488,6 +1493,10 @@ static void lao__gl_draw_segments(const lao__gl *gl, uint32_t segment_count) {
     uint32_t first, count;
     for (first = 0; first < segment_count; first += count) {
         count = lao__gl_lower(segment_count - first, LAO__GL_QUADS);
+        /* llvmpipe keeps every triangle it has not come to yet, about 500 bytes each, and may be
+           millions behind: it catches up before more are drawn */
+        if (gl->software && first % (LAO__GL_QUADS * LAO__GL_PIECES) == 0 && first > 0)
+            gl->Finish();
         gl->DrawElementsBaseVertex(LAO__GL_TRIANGLES, (lao__gl_int)(count * 6),
                                    LAO__GL_UNSIGNED_SHORT, NULL, (lao__gl_int)(first * 4));
     }

@@ -80,6 +80,7 @@ typedef struct lao__vk_functions {
 /* ---------------------------------------------------------------------------------------- types */
 
 /* Segments per indexed draw: four vertices each must fit 16-bit indices. */
+#define LAO__VK_PIECES 4u /* of LAO__VK_QUADS, before a processor catches up */
 #define LAO__VK_QUADS 16384u
 #define LAO__VK_BARRIERS 16u
 #define LAO__VK_STAGES (VK_SHADER_STAGE_VERTEX_BIT | VK_SHADER_STAGE_FRAGMENT_BIT)
@@ -183,6 +184,7 @@ typedef struct lao__vk {
     uint32_t units;          /* textures of one stage */
     double timestamp_period; /* ns */
     uint64_t timestamp_mask; /* 0: no timestamps */
+    int software;            /* the device is a processor: lao__vk_catch_up */
     const lao_shader *fullscreen;
     VkSampler sampler;
     VkPipelineCache cache;
@@ -580,6 +582,7 @@ static lao_result lao__vk_check_device(lao__vk *vk, lao_backend_caps *caps) {
         result = lao__vk_check_formats(vk);
     if (result)
         return result;
+    vk->software = properties.properties.deviceType == VK_PHYSICAL_DEVICE_TYPE_CPU;
     vk->uniform_alignment = limits.minUniformBufferOffsetAlignment;
     if (texels > most.maxMemoryAllocationSize / 16)
         texels = most.maxMemoryAllocationSize / 16;
@@ -1467,8 +1470,9 @@ static VkRenderingAttachmentInfo lao__vk_attachment(const lao__vk_build *build,
     return info;
 }
 
+/* again: to go on with what the step has drawn so far */
 static void lao__vk_begin(const lao__vk *vk, const lao__vk_build *build,
-                          const lao_execution *execution, const lao_plan_step *step,
+                          const lao_execution *execution, const lao_plan_step *step, int again,
                           VkCommandBuffer commands) {
     VkRenderingAttachmentInfo colors[LAO_MAX_WRITES], depth;
     VkViewport viewport;
@@ -1478,6 +1482,10 @@ static void lao__vk_begin(const lao__vk *vk, const lao__vk_build *build,
     for (i = 0; i < info.colorAttachmentCount; i++)
         colors[i] = lao__vk_attachment(build, execution, &step->colors[i], 0);
     depth = lao__vk_attachment(build, execution, &step->depth, 1);
+    for (i = 0; i < info.colorAttachmentCount && again; i++)
+        colors[i].loadOp = VK_ATTACHMENT_LOAD_OP_LOAD;
+    if (again)
+        depth.loadOp = VK_ATTACHMENT_LOAD_OP_LOAD;
     info.renderArea.extent.width = step->width;
     info.renderArea.extent.height = step->height;
     info.layerCount = 1;
@@ -1492,25 +1500,50 @@ static void lao__vk_begin(const lao__vk *vk, const lao__vk_build *build,
     vk->call.CmdSetScissor(commands, 0, 1, &info.renderArea);
 }
 
+/* A processor that draws keeps every triangle it has not come to yet, about 500 bytes each, and may
+   be millions behind: it catches up before more are recorded. */
+static void lao__vk_catch_up(const lao__vk *vk, const lao__vk_build *build,
+                             const lao_execution *execution, const lao_plan_step *step,
+                             VkCommandBuffer commands) {
+    LAO__VK_STRUCT(VkMemoryBarrier2, barrier, MEMORY_BARRIER_2);
+    LAO__VK_STRUCT(VkDependencyInfo, info, DEPENDENCY_INFO);
+    barrier.srcStageMask = barrier.dstStageMask = VK_PIPELINE_STAGE_2_COLOR_ATTACHMENT_OUTPUT_BIT |
+                                                  VK_PIPELINE_STAGE_2_EARLY_FRAGMENT_TESTS_BIT |
+                                                  VK_PIPELINE_STAGE_2_LATE_FRAGMENT_TESTS_BIT;
+    barrier.srcAccessMask =
+        VK_ACCESS_2_COLOR_ATTACHMENT_WRITE_BIT | VK_ACCESS_2_DEPTH_STENCIL_ATTACHMENT_WRITE_BIT;
+    barrier.dstAccessMask = barrier.srcAccessMask | VK_ACCESS_2_COLOR_ATTACHMENT_READ_BIT |
+                            VK_ACCESS_2_DEPTH_STENCIL_ATTACHMENT_READ_BIT;
+    info.memoryBarrierCount = 1;
+    info.pMemoryBarriers = &barrier;
+    vk->call.CmdEndRendering(commands);
+    vk->call.CmdPipelineBarrier2(commands, &info);
+    lao__vk_begin(vk, build, execution, step, 1, commands);
+}
+
 /* Segments in pieces that 16-bit indices reach. */
-static void lao__vk_draw_segments(const lao__vk *vk, uint32_t segment_count,
-                                  VkCommandBuffer commands) {
+static void lao__vk_draw_segments(const lao__vk *vk, const lao__vk_build *build,
+                                  const lao_execution *execution, const lao_plan_step *step,
+                                  uint32_t segment_count, VkCommandBuffer commands) {
     uint32_t first, left;
     for (first = 0; first < segment_count; first += LAO__VK_QUADS) {
         left = lao__vk_least(segment_count - first, LAO__VK_QUADS);
+        if (vk->software && first % (LAO__VK_QUADS * LAO__VK_PIECES) == 0 && first > 0)
+            lao__vk_catch_up(vk, build, execution, step, commands);
         vk->call.CmdDrawIndexed(commands, 6 * left, 1, 0, (int32_t)(4 * first), 0);
     }
 }
 
-static void lao__vk_draw(const lao__vk *vk, const lao_plan_step *step, const lao_chunk *chunk,
-                         VkCommandBuffer commands) {
+static void lao__vk_draw(const lao__vk *vk, const lao__vk_build *build,
+                         const lao_execution *execution, const lao_plan_step *step,
+                         const lao_chunk *chunk, VkCommandBuffer commands) {
     uint32_t i;
     for (i = 0; i < LAO_MAX_BUFFERS; i++) {
         if (chunk->buffers[i])
             ((lao__vk_texels *)chunk->buffers[i])->object.last_use = vk->epoch;
     }
     if (step->row->kind == LAO_PASS_DRAW_LINES)
-        lao__vk_draw_segments(vk, chunk->count, commands);
+        lao__vk_draw_segments(vk, build, execution, step, chunk->count, commands);
     else if (step->row->kind == LAO_PASS_DRAW_MESH)
         vk->call.CmdDraw(commands, 3 * chunk->count, 1, 0, 0);
     else
@@ -1527,7 +1560,7 @@ static void lao__vk_step(const lao__vk *vk, const lao__vk_build *build,
     const uint32_t count = lao_step_draws(execution, step, &chunks);
     uint32_t i;
     pipeline->object.last_use = vk->epoch;
-    lao__vk_begin(vk, build, execution, step, commands);
+    lao__vk_begin(vk, build, execution, step, 0, commands);
     vk->call.CmdBindPipeline(commands, VK_PIPELINE_BIND_POINT_GRAPHICS, pipeline->pipeline);
     vk->call.CmdPushConstants(commands, layout, LAO__VK_STAGES, 0, sizeof step->uniforms,
                               step->uniforms);
@@ -1536,7 +1569,7 @@ static void lao__vk_step(const lao__vk *vk, const lao__vk_build *build,
     for (i = 0; i < count; i++) {
         vk->call.CmdBindDescriptorSets(commands, VK_PIPELINE_BIND_POINT_GRAPHICS, layout, 0, 1,
                                        &sets[i], 0, NULL);
-        lao__vk_draw(vk, step, &chunks[i], commands);
+        lao__vk_draw(vk, build, execution, step, &chunks[i], commands);
     }
     vk->call.CmdEndRendering(commands);
 }

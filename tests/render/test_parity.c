@@ -218,6 +218,19 @@ static void test_two_sets(void **state) {
     compare("two sets", &shot);
 }
 
+/* More segments than a processor takes at once: it catches up in between (4 texels a line). */
+static void test_many_segments(void **state) {
+    render_shot shot = mixed(0);
+    render_lines crowd;
+    (void)state;
+    both();
+    memset(&crowd, 0, sizeof crowd);
+    render_scatter(&crowd, 36000, 5, 1.5, 9, 9);
+    shot.lines[0] = &crowd;
+    compare("many segments", &shot);
+    render_lines_free(&crowd);
+}
+
 static void test_targets(void **state) {
     render_shot shot = mixed(1);
     (void)state;
@@ -287,6 +300,7 @@ int main(int argc, char **argv) {
         cmocka_unit_test(test_samples),
         cmocka_unit_test(test_levels),
         cmocka_unit_test(test_two_sets),
+        cmocka_unit_test(test_many_segments),
         cmocka_unit_test(test_targets),
         cmocka_unit_test(test_host_depth),
         cmocka_unit_test(test_halos),

@@ -382,6 +382,41 @@ static void nothing_to_draw(void **state) {
     close_all(&f, context);
 }
 
+/* More segments than a processor takes at once: rendering ends and begins again in between. */
+static void many_segments(void **state) {
+    enum { LINES = 36000 }; /* four texels each */
+    fixture f;
+    lao_context *context;
+    lao_lines_desc desc;
+    float *points = calloc(6 * LINES, sizeof *points);
+    uint32_t *offsets = calloc(LINES + 1, sizeof *offsets);
+    assert_true(points && offsets);
+    for (uint32_t i = 0; i < LINES; i++) {
+        float t = 6.2831853f * (float)i / LINES;
+        points[6 * i + 3] = 2 * cosf(t); /* spokes */
+        points[6 * i + 4] = 2 * sinf(t);
+        offsets[i + 1] = 2 * i + 2;
+    }
+    memset(&desc, 0, sizeof desc);
+    desc.line_count = LINES;
+    desc.point_count = 2 * LINES;
+    desc.offsets = offsets;
+    desc.points = points;
+    fixture_open(&f, *(uint32_t *)*state);
+    assert_int_equal(fixture_context(&f, 1, &context), LAO_OK);
+    lao_set set;
+    memset(&set, 0, sizeof set);
+    set.settings = fixture_settings();
+    assert_int_equal(lao_lines_create(context, &desc, &set.lines), LAO_OK);
+    lao_frame frame = fixture_frame(fixture_view_create(context, WIDTH, HEIGHT), &set, 1);
+    assert_rendered(&f, context, &frame);
+    fixture_wait(&f);
+    assert_true(covered(context, frame.view) > 0);
+    close_all(&f, context);
+    free(points);
+    free(offsets);
+}
+
 static void destroyed_in_any_order(void **state) {
     for (int order = 0; order < 5; order++) {
         fixture f;
@@ -513,6 +548,7 @@ int main(void) {
         BOTH(host_depth),
         BOTH(host_geometry),
         ON13(nothing_to_draw),
+        BOTH(many_segments),
         ON13(destroyed_in_any_order),
         BOTH(recorded_but_not_submitted),
         BOTH(timings_and_reading),
