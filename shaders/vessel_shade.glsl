@@ -14,6 +14,7 @@ LAO_CONSTANT(0, lao_constant_near_miss)
 LAO_CONSTANT(1, lao_constant_surface_shininess)
 LAO_CONSTANT(2, lao_constant_field_occlusion)
 LAO_CONSTANT(3, lao_constant_variant) /* 1: with shapes */
+LAO_CONSTANT(4, lao_constant_supersampling)
 
 LAO_OUT(0, vec4, out_color)
 
@@ -47,9 +48,17 @@ void main() {
     lao_v3 origin = lao_ray_origin(lao_frame.world, slope, lao_frame.depth.w);
     lao_v3 direction = lao_ray_direction(lao_frame.world, slope, lao_frame.depth.w);
     bool missed = hit.w == -1.0;
-    bool outlined = lao_constant_near_miss != SDV_NEAR_MISS_NONE &&
-                    (missed ? sdv_is_silhouette(false, n.w, lao_setting_silhouette)
-                            : sdv_is_contour(n.w, lao_setting_contour));
+    lao_v3 near_miss = lao_transform(lao_frame.view, lao_v3_along(origin, direction, r.y));
+    float zoom = sdv_zoom(lao_frame.scale, lao_frame.depth, -near_miss.z, float(lao_constant_supersampling));
+    bool outlined = false;
+    if (lao_constant_near_miss != SDV_NEAR_MISS_NONE) {
+        if (missed) {
+            outlined =
+                sdv_is_silhouette(false, n.w, sdv_outline_width(lao_setting_silhouette, lao_setting_outline_unit, zoom));
+        } else {
+            outlined = sdv_is_contour(n.w, sdv_outline_width(lao_setting_contour, lao_setting_outline_unit, zoom));
+        }
+    }
     if (missed && !outlined) {
         discard;
     }
@@ -72,9 +81,10 @@ void main() {
     if (lao_constant_field_occlusion != 0) {
         light = sdv_dimmed(light, 1.0 - openness(sdv_box_fetch(box), p, n.xyz), lao_setting_occlusion_strength);
     }
-    if (lao_constant_near_miss != SDV_NEAR_MISS_NONE &&
-        sdv_is_depth_shadow(n.w, r.y, r.x, lao_setting_shadow_ratio, 0.01 * lao_setting_shadow_width * lao_frame.depth.z)) {
-        light = sdv_dimmed(light, 1.0, lao_setting_shadow_strength);
+    if (lao_constant_near_miss != SDV_NEAR_MISS_NONE) {
+        float dark = sdv_depth_shadow(n.w, r.y, r.x, lao_setting_shadow_ratio,
+                                      0.01 * lao_setting_shadow_width * lao_frame.depth.z, lao_setting_shadow_softness);
+        light = sdv_dimmed(light, dark, lao_setting_shadow_strength);
     }
     out_color = vec4(sdv_shade(color, n.xyz, lao_v3_scale(direction, -1.0), lao_setting_surface_ambient,
                                lao_setting_surface_diffuse, lao_setting_surface_specular, lao_constant_surface_shininess,

@@ -120,6 +120,13 @@ static void ray_of(const lao_frame_uniforms *frame, uint32_t x, uint32_t y, sdv_
     ray->direction = lao_ray_direction(frame->world, slope, frame->depth.w);
 }
 
+/* What the default outlines and depth shadows need. */
+static float reach_of(const lao_frame_uniforms *frame) {
+    float zoom = sdv_zoom(frame->scale, frame->depth, frame->depth.x + frame->depth.z, 1);
+    return sdv_near_miss_reach(sdv_outline_width(1.5f, 0, zoom), sdv_outline_width(1, 0, zoom),
+                               1.5f, frame->depth.z);
+}
+
 /* The traced images against C; returns how many pixels hit. */
 static uint32_t check_trace(const scene *s, const subject *tree, const render_result *result) {
     const render_image *position = render_find(result, "vessel_position", 0);
@@ -137,7 +144,7 @@ static uint32_t check_trace(const scene *s, const subject *tree, const render_re
             ray.flags = s->vessel.near_miss == SDV_NEAR_MISS_CLOSE   ? SDV_TRACE_CLOSE
                         : s->vessel.near_miss == SDV_NEAR_MISS_EXACT ? SDV_TRACE_NEAREST
                                                                      : 0;
-            ray.reach = sdv_near_miss_reach(0.5f, 0.25f, 2, result->frame.depth.z);
+            ray.reach = reach_of(&result->frame);
             sdv_trace(&tree->grid, &ray, &hit);
             q = lao_v4_make(hit.position.x, hit.position.y, hit.position.z,
                             hit.cone == SDV_NONE ? -1.0f : (float)hit.cone);
