@@ -400,8 +400,10 @@ SDV_API void sdv_trace_shapes(const sdv_grid *grid, const sdv_shapes *shapes, co
    the way: 1 / hardness is the light's radius as seen from p. `bias` (mm) is the start, off the
    surface. */
 SDV_API float sdv_shadow(const sdv_grid *grid, lao_v3 p, lao_v3 light, float hardness, float bias);
-/* Openness of p along its normal, 0 .. 1, from the field at 5 places up to `reach` mm away. */
-SDV_API float sdv_openness(const sdv_grid *grid, lao_v3 p, lao_v3 normal, float reach);
+/* Openness of p along its normal, 0 .. 1, from the field at 5 places up to `reach` mm away;
+   `inside` non-zero: of a wall seen from within, the room inside counts. */
+SDV_API float sdv_openness(const sdv_grid *grid, lao_v3 p, lao_v3 normal, float reach,
+                           uint32_t inside);
 
 /* What distances are measured to: a ball, a path, a surface. */
 typedef struct sdv_target_desc {
@@ -456,8 +458,8 @@ SDV_API lao_result sdv_pull_push(const sdv_host *host, const sdv_pull_push_desc 
 #define SDV_SETTINGS(X)                                                                            \
     X(near_miss, ENUM, 0, 2, 0, 1, "", "close|exact|none",                                         \
       "keep how near rays came to other vessels: silhouettes, contours, depth shadows")            \
-    X(silhouette, FLOAT, 0, 1000, 1.5f, 0, "px", "", "width of the outline around vessels")        \
-    X(contour, FLOAT, 0, 1000, 1, 0, "px", "", "width of outlines in front of other vessels")      \
+    X(silhouette, FLOAT, 0, 1000, 1.25f, 0, "px", "", "width of the outline around vessels")       \
+    X(contour, FLOAT, 0, 1000, 0.8f, 0, "px", "", "width of outlines in front of other vessels")   \
     X(outline_unit, ENUM, 0, 1, 0, 0, "", "px|mm", "what both widths are in")                      \
     X(shadow_ratio, FLOAT, 0, 10, 0.15f, 0, "", "",                                                \
       "width of a depth shadow per distance behind the edge (m of L19 Fig. 8)")                    \
@@ -468,7 +470,7 @@ SDV_API lao_result sdv_pull_push(const sdv_host *host, const sdv_pull_push_desc 
     X(field_occlusion, BOOL, 0, 1, 1, 1, "", "", "ambient occlusion from the distance field")      \
     X(occlusion_reach, FLOAT, 0.01f, 100, 4, 0, "%", "",                                           \
       "how far field occlusion looks, of the scene's diameter")                                    \
-    X(occlusion_strength, FLOAT, 0, 5, 1, 0, "", "", "light that field occlusion takes away")      \
+    X(occlusion_strength, FLOAT, 0, 5, 0.75f, 0, "", "", "light that field occlusion takes away")  \
     X(surface_ambient, FLOAT, 0, 1, 0.25f, 0, "", "", "ambient part of a surface's illumination")  \
     X(surface_diffuse, FLOAT, 0, 2, 0.7f, 0, "", "", "diffuse part of a surface's illumination")   \
     X(surface_specular, FLOAT, 0, 2, 0.2f, 0, "", "", "specular part of a surface's illumination") \
@@ -3740,13 +3742,15 @@ SDV_API float sdv_shadow(const sdv_grid *grid, lao_v3 p, lao_v3 light, float har
     }
     return lit;
 }
-SDV_API float sdv_openness(const sdv_grid *grid, lao_v3 p, lao_v3 normal, float reach) {
+SDV_API float sdv_openness(const sdv_grid *grid, lao_v3 p, lao_v3 normal, float reach,
+                           uint32_t inside) {
     float closed = 0.0f;
     lao_int i;
     for (i = 0; i < SDV_OPEN_SAMPLES && reach > 0.0f; i++) {
         float place = sdv_open_place(reach, i);
         lao_v3 q = lao_v3_along(p, normal, place);
-        closed = sdv_open_add(closed, sdv_grid_distance(grid, q, NULL), place, i);
+        float d = sdv_grid_distance(grid, q, NULL);
+        closed = sdv_open_add(closed, inside ? -d : d, place, i);
     }
     return sdv_open_result(closed);
 }

@@ -28,13 +28,14 @@ float field_at(sdv_box b, lao_v3 p) {
     return d;
 }
 
-/* Openness of p along its normal: sdv_openness. */
-float openness(sdv_box b, lao_v3 p, lao_v3 n) {
+/* Openness of p along its normal: sdv_openness; from within a vessel the room inside counts. */
+float openness(sdv_box b, lao_v3 p, lao_v3 n, bool inside) {
     float reach = 0.01 * lao_setting_occlusion_reach * lao_frame.depth.z;
     float closed = 0.0;
     for (int i = 0; i < SDV_OPEN_SAMPLES; i++) {
         float place = sdv_open_place(reach, i);
-        closed = sdv_open_add(closed, field_at(b, lao_v3_along(p, n, place)), place, i);
+        float d = field_at(b, lao_v3_along(p, n, place));
+        closed = sdv_open_add(closed, inside ? -d : d, place, i);
     }
     return sdv_open_result(closed);
 }
@@ -79,7 +80,7 @@ void main() {
     }
     LAO_EXACT float light = 1.0;
     if (lao_constant_field_occlusion != 0) {
-        light = sdv_dimmed(light, 1.0 - openness(sdv_box_fetch(box), p, n.xyz), lao_setting_occlusion_strength);
+        light = sdv_dimmed(light, 1.0 - openness(sdv_box_fetch(box), p, n.xyz, r.w > 0.5), lao_setting_occlusion_strength);
     }
     if (lao_constant_near_miss != SDV_NEAR_MISS_NONE) {
         float dark = sdv_depth_shadow(n.w, r.y, r.x, lao_setting_shadow_ratio,
