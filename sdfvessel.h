@@ -398,8 +398,10 @@ SDV_API void sdv_trace_shapes(const sdv_grid *grid, const sdv_shapes *shapes, co
    the way: 1 / hardness is the light's radius as seen from p. `bias` (mm) is the start, off the
    surface. */
 SDV_API float sdv_shadow(const sdv_grid *grid, lao_v3 p, lao_v3 light, float hardness, float bias);
-/* Openness of p along its normal, 0 .. 1, from the field at 5 places up to `reach` mm away. */
-SDV_API float sdv_openness(const sdv_grid *grid, lao_v3 p, lao_v3 normal, float reach);
+/* Openness of p along its normal, 0 .. 1, from the field at 5 places up to `reach` mm away;
+   `inside` non-zero: of a wall seen from within, the room inside counts. */
+SDV_API float sdv_openness(const sdv_grid *grid, lao_v3 p, lao_v3 normal, float reach,
+                           uint32_t inside);
 
 /* What distances are measured to: a ball, a path, a surface. */
 typedef struct sdv_target_desc {
@@ -454,17 +456,19 @@ SDV_API lao_result sdv_pull_push(const sdv_host *host, const sdv_pull_push_desc 
 #define SDV_SETTINGS(X)                                                                            \
     X(near_miss, ENUM, 0, 2, 0, 1, "", "close|exact|none",                                         \
       "keep how near rays came to other vessels: silhouettes, contours, depth shadows")            \
-    X(silhouette, FLOAT, 0, 1000, 0.5f, 0, "mm", "", "width of the outline around vessels")        \
-    X(contour, FLOAT, 0, 1000, 0.25f, 0, "mm", "", "width of outlines in front of other vessels")  \
+    X(silhouette, FLOAT, 0, 1000, 1.25f, 0, "px", "", "width of the outline around vessels")       \
+    X(contour, FLOAT, 0, 1000, 0.8f, 0, "px", "", "width of outlines in front of other vessels")   \
+    X(outline_unit, ENUM, 0, 1, 0, 0, "", "px|mm", "what both widths are in")                      \
     X(shadow_ratio, FLOAT, 0, 10, 0.15f, 0, "", "",                                                \
       "width of a depth shadow per distance behind the edge (m of L19 Fig. 8)")                    \
-    X(shadow_width, FLOAT, 0, 100, 2, 0, "%", "",                                                  \
+    X(shadow_width, FLOAT, 0, 100, 1.5f, 0, "%", "",                                               \
       "widest depth shadow, of the scene's diameter (a of L19 Fig. 8)")                            \
+    X(shadow_softness, FLOAT, 0, 1, 1, 0, "", "", "how much of a depth shadow fades; 0: none")     \
     X(shadow_strength, FLOAT, 0, 1, 0.6f, 0, "", "", "light that a depth shadow takes away")       \
     X(field_occlusion, BOOL, 0, 1, 1, 1, "", "", "ambient occlusion from the distance field")      \
     X(occlusion_reach, FLOAT, 0.01f, 100, 4, 0, "%", "",                                           \
       "how far field occlusion looks, of the scene's diameter")                                    \
-    X(occlusion_strength, FLOAT, 0, 5, 1, 0, "", "", "light that field occlusion takes away")      \
+    X(occlusion_strength, FLOAT, 0, 5, 0.75f, 0, "", "", "light that field occlusion takes away")  \
     X(surface_ambient, FLOAT, 0, 1, 0.25f, 0, "", "", "ambient part of a surface's illumination")  \
     X(surface_diffuse, FLOAT, 0, 2, 0.7f, 0, "", "", "diffuse part of a surface's illumination")   \
     X(surface_specular, FLOAT, 0, 2, 0.2f, 0, "", "", "specular part of a surface's illumination") \
@@ -523,67 +527,43 @@ SDV_API void sdv_object_free(sdv_object *object);
    lineao.h's (same rules: see there). */
 /* SDV_SHARED_BEGIN */
 /* ---- round cones (L19 3.2 with METHODS 4): a, b = centre and radius of the two ends, mm */
-/* A point seen from a cone, in the plane of the cone's axis and the point. */
+/* A point seen from a cone: the balls between a and b reach nearest to it from `place`. */
 struct sdv_cone_point {
     float distance; /* signed, mm */
-    float part;     /* -1: ball a is nearest, 1: ball b, 0: the cone between them */
-    float x, y;     /* between: along the axis from a, and away from it */
-    float s, l, d;  /* between: length of the axis, of the tangent; radius of a less that of b */
-    lao_v3 axis;    /* between: unit, from a to b */
-    lao_v3 away;    /* from the axis or the ball's centre to the point, not unit */
-    float apart;    /* length of away */
+    float place;    /* of the nearest ball, 0 at a, 1 at b */
+    lao_v3 away;    /* from that ball's centre to the point */
+    float radial;   /* length of away */
+    lao_v3 axis;    /* from a to b, not unit */
 };
 #ifndef LAO_GLSL
 typedef struct sdv_cone_point sdv_cone_point;
 #endif
-LAO_FN sdv_cone_point sdv_cone_point_ball(sdv_cone_point c, lao_v3 p, lao_v4 ball, float part) {
-    sdv_cone_point r = c;
-    r.away = lao_v3_sub(p, lao_v3_make(ball.x, ball.y, ball.z));
-    LAO_EXACT float length = lao_sqrt(lao_v3_dot(r.away, r.away));
-    r.apart = length;
-    r.distance = length - ball.w;
-    r.part = part;
-    return r;
-}
+/* The three regions of METHODS 4 in one: with x along the axis and y away from it, the centre of
+   the nearest ball is at x - y d / l, and stays between the ends. Where one ball holds the other it
+   is the nearest. */
 LAO_FN sdv_cone_point sdv_cone_point_make(lao_v3 p, lao_v4 a, lao_v4 b) {
     sdv_cone_point c;
     lao_v3 q = lao_v3_sub(p, lao_v3_make(a.x, a.y, a.z));
-    lao_v3 ab = lao_v3_make(b.x - a.x, b.y - a.y, b.z - a.z);
-    LAO_EXACT float s = lao_sqrt(lao_v3_dot(ab, ab));
+    c.axis = lao_v3_make(b.x - a.x, b.y - a.y, b.z - a.z);
+    LAO_EXACT float s = lao_sqrt(lao_v3_dot(c.axis, c.axis));
     LAO_EXACT float d = a.w - b.w;
     LAO_EXACT float least = lao_abs(d) + 1.0e-6f * lao_max(a.w, b.w);
-    c.s = s;
-    c.d = d;
-    c.l = 0.0f;
-    c.x = 0.0f;
-    c.y = 0.0f;
-    c.axis = ab;
-    if (!(s > least)) { /* one ball holds the other */
-        if (d < 0.0f) {
-            return sdv_cone_point_ball(c, p, b, 1.0f);
-        }
-        return sdv_cone_point_ball(c, p, a, -1.0f);
+    LAO_EXACT float place = d < 0.0f ? 1.0f : 0.0f;
+    if (s > least) {
+        LAO_EXACT float inverse = 1.0f / s;
+        LAO_EXACT float foot = lao_v3_dot(q, c.axis) * inverse * inverse;
+        lao_v3 across = lao_v3_along(q, c.axis, -foot);
+        LAO_EXACT float y = lao_sqrt(lao_v3_dot(across, across));
+        LAO_EXACT float l = lao_sqrt((s - d) * (s + d));
+        LAO_EXACT float back = y * (d * inverse / l);
+        place = lao_clamp01(foot - back);
     }
-    LAO_EXACT float inverse = 1.0f / s;
-    c.axis = lao_v3_scale(ab, inverse);
-    LAO_EXACT float x = lao_v3_dot(q, c.axis);
-    c.away = lao_v3_along(q, c.axis, -x);
-    LAO_EXACT float y = lao_sqrt(lao_v3_dot(c.away, c.away));
-    LAO_EXACT float l = lao_sqrt((s - d) * (s + d));
-    LAO_EXACT float u = (l * x - d * y) * inverse;
-    if (u < 0.0f) {
-        return sdv_cone_point_ball(c, p, a, -1.0f);
-    }
-    if (u > l) {
-        return sdv_cone_point_ball(c, p, b, 1.0f);
-    }
-    LAO_EXACT float distance = (d * x + l * y) * inverse - a.w;
+    c.place = place;
+    c.away = lao_v3_along(q, c.axis, -place);
+    LAO_EXACT float radial = lao_sqrt(lao_v3_dot(c.away, c.away));
+    LAO_EXACT float distance = radial - (a.w - place * d);
+    c.radial = radial;
     c.distance = distance;
-    c.part = 0.0f;
-    c.x = x;
-    c.y = y;
-    c.l = l;
-    c.apart = y;
     return c;
 }
 /* Signed distance in mm, exact outside and inside; one ball when it holds the other (Eqs. 1-3,
@@ -609,21 +589,19 @@ LAO_FN lao_v3 sdv_perpendicular(lao_v3 v) {
    ball and on the axis any of the possible ones. */
 LAO_FN lao_v3 sdv_round_cone_gradient(lao_v3 p, lao_v4 a, lao_v4 b) {
     sdv_cone_point c = sdv_cone_point_make(p, a, b);
-    if (c.part != 0.0f) {
-        return lao_v3_unit(c.away, lao_v3_make(0.0f, 0.0f, 1.0f));
+    lao_v3 otherwise = sdv_perpendicular(c.axis);
+    LAO_EXACT float s = lao_sqrt(lao_v3_dot(c.axis, c.axis));
+    LAO_EXACT float d = a.w - b.w;
+    if (s > lao_abs(d)) {
+        LAO_EXACT float outward = lao_sqrt((s - d) * (s + d)) / s;
+        LAO_EXACT float along = d / (s * s);
+        otherwise = lao_v3_along(lao_v3_scale(otherwise, outward), c.axis, along);
     }
-    lao_v3 away = lao_v3_unit(c.away, sdv_perpendicular(c.axis));
-    LAO_EXACT float along = c.d / c.s;
-    LAO_EXACT float outward = c.l / c.s;
-    return lao_v3_unit(lao_v3_along(lao_v3_scale(away, outward), c.axis, along), away);
+    return lao_v3_unit(c.away, otherwise);
 }
 /* Slope of the distance along a unit direction: gradient times direction. */
 LAO_FN float sdv_cone_slope(sdv_cone_point c, lao_v3 direction) {
-    LAO_EXACT float away = lao_v3_dot(c.away, direction) / lao_max(c.apart, 1.0e-30f);
-    if (c.part != 0.0f) {
-        return away;
-    }
-    LAO_EXACT float slope = (c.d * lao_v3_dot(c.axis, direction) + c.l * away) / c.s;
+    LAO_EXACT float slope = lao_v3_dot(c.away, direction) / lao_max(c.radial, 1.0e-30f);
     return slope;
 }
 
@@ -766,11 +744,7 @@ LAO_FN lao_v2 sdv_line_nearest(lao_v3 origin, lao_v3 direction, lao_v4 a, lao_v4
     lao_v4 pb = lao_v4_make(fb.x, fb.y, fb.z, b.w);
     lao_v3 zero = lao_v3_make(0.0f, 0.0f, 0.0f);
     sdv_cone_point c = sdv_cone_point_make(zero, pa, pb);
-    if (c.part != 0.0f) {
-        return lao_v2_make(c.distance, c.part < 0.0f ? ta : tb);
-    }
-    LAO_EXACT float centre = (c.x - c.y * c.d / lao_max(c.l, 1.0e-30f)) / c.s;
-    LAO_EXACT float t = ta + (tb - ta) * lao_clamp01(centre);
+    LAO_EXACT float t = ta + (tb - ta) * c.place;
     return lao_v2_make(c.distance, t);
 }
 
@@ -1130,6 +1104,16 @@ LAO_FN bool sdv_is_depth_shadow(float d_min, float t_min, float t, float ratio, 
     LAO_EXACT float width = lao_min(ratio * depth, most);
     return d_min < width;
 }
+/* How dark that shadow is, 0 .. 1: the rim of it, a part `softness` of its width, fades. */
+LAO_FN float sdv_depth_shadow(float d_min, float t_min, float t, float ratio, float most,
+                              float softness) {
+    LAO_EXACT float width = lao_min(ratio * lao_abs(t - t_min), most);
+    LAO_EXACT float dark = (1.0f - d_min / lao_max(width, 1.0e-30f)) / lao_max(softness, 1.0e-3f);
+    if (!(d_min < width)) {
+        return 0.0f;
+    }
+    return lao_clamp01(dark);
+}
 /* Soft shadow: `light` so far, 1 at the start, after a sample of the field at t on the way. */
 LAO_FN float sdv_shadow_add(float light, float distance, float t, float hardness) {
     LAO_EXACT float passed = hardness * distance / lao_max(t, 1.0e-6f);
@@ -1303,6 +1287,18 @@ LAO_FN float sdv_push_weight(sdv_mix parents, float own) {
 #define SDV_NEAR_MISS_CLOSE 0
 #define SDV_NEAR_MISS_EXACT 1
 #define SDV_NEAR_MISS_NONE 2
+#define SDV_OUTLINE_PX 0
+/* Pixels of the picture per mm at view depth z; scale, depth: of lao_frame_uniforms. */
+LAO_FN float sdv_zoom(lao_v4 scale, lao_v4 depth, float z, float supersampling) {
+    LAO_EXACT float across = (depth.w > 0.5f ? 1.0f : lao_max(z, 1.0e-6f)) * supersampling;
+    LAO_EXACT float r = lao_abs(scale.y) / across;
+    return r;
+}
+/* An outline's width in mm. */
+LAO_FN float sdv_outline_width(float width, float unit, float zoom) {
+    LAO_EXACT float mm = width / zoom;
+    return unit > 0.5f ? width : mm;
+}
 /* How near to a vessel a ray must pass for anything to be drawn of it, mm. `shadow`: % of the
    diameter. */
 LAO_FN float sdv_near_miss_reach(float silhouette, float contour, float shadow, float diameter) {
@@ -3739,13 +3735,15 @@ SDV_API float sdv_shadow(const sdv_grid *grid, lao_v3 p, lao_v3 light, float har
     }
     return lit;
 }
-SDV_API float sdv_openness(const sdv_grid *grid, lao_v3 p, lao_v3 normal, float reach) {
+SDV_API float sdv_openness(const sdv_grid *grid, lao_v3 p, lao_v3 normal, float reach,
+                           uint32_t inside) {
     float closed = 0.0f;
     lao_int i;
     for (i = 0; i < SDV_OPEN_SAMPLES && reach > 0.0f; i++) {
         float place = sdv_open_place(reach, i);
         lao_v3 q = lao_v3_along(p, normal, place);
-        closed = sdv_open_add(closed, sdv_grid_distance(grid, q, NULL), place, i);
+        float d = sdv_grid_distance(grid, q, NULL);
+        closed = sdv_open_add(closed, inside ? -d : d, place, i);
     }
     return sdv_open_result(closed);
 }

@@ -14,6 +14,7 @@ LAO_CONSTANT(0, lao_constant_near_miss)
 LAO_CONSTANT(1, lao_constant_surface_shininess)
 LAO_CONSTANT(2, lao_constant_field_occlusion)
 LAO_CONSTANT(3, lao_constant_variant) /* 1: with shapes */
+LAO_CONSTANT(4, lao_constant_supersampling)
 
 LAO_OUT(0, vec4, out_color)
 
@@ -27,13 +28,14 @@ float field_at(sdv_box b, lao_v3 p) {
     return d;
 }
 
-/* Openness of p along its normal: sdv_openness. */
-float openness(sdv_box b, lao_v3 p, lao_v3 n) {
+/* Openness of p along its normal: sdv_openness; from within a vessel the room inside counts. */
+float openness(sdv_box b, lao_v3 p, lao_v3 n, bool inside) {
     float reach = 0.01 * lao_setting_occlusion_reach * lao_frame.depth.z;
     float closed = 0.0;
     for (int i = 0; i < SDV_OPEN_SAMPLES; i++) {
         float place = sdv_open_place(reach, i);
-        closed = sdv_open_add(closed, field_at(b, lao_v3_along(p, n, place)), place, i);
+        float d = field_at(b, lao_v3_along(p, n, place));
+        closed = sdv_open_add(closed, inside ? -d : d, place, i);
     }
     return sdv_open_result(closed);
 }
@@ -47,9 +49,17 @@ void main() {
     lao_v3 origin = lao_ray_origin(lao_frame.world, slope, lao_frame.depth.w);
     lao_v3 direction = lao_ray_direction(lao_frame.world, slope, lao_frame.depth.w);
     bool missed = hit.w == -1.0;
-    bool outlined = lao_constant_near_miss != SDV_NEAR_MISS_NONE &&
-                    (missed ? sdv_is_silhouette(false, n.w, lao_setting_silhouette)
-                            : sdv_is_contour(n.w, lao_setting_contour));
+    lao_v3 near_miss = lao_transform(lao_frame.view, lao_v3_along(origin, direction, r.y));
+    float zoom = sdv_zoom(lao_frame.scale, lao_frame.depth, -near_miss.z, float(lao_constant_supersampling));
+    bool outlined = false;
+    if (lao_constant_near_miss != SDV_NEAR_MISS_NONE) {
+        if (missed) {
+            outlined =
+                sdv_is_silhouette(false, n.w, sdv_outline_width(lao_setting_silhouette, lao_setting_outline_unit, zoom));
+        } else {
+            outlined = sdv_is_contour(n.w, sdv_outline_width(lao_setting_contour, lao_setting_outline_unit, zoom));
+        }
+    }
     if (missed && !outlined) {
         discard;
     }
@@ -70,11 +80,12 @@ void main() {
     }
     LAO_EXACT float light = 1.0;
     if (lao_constant_field_occlusion != 0) {
-        light = sdv_dimmed(light, 1.0 - openness(sdv_box_fetch(box), p, n.xyz), lao_setting_occlusion_strength);
+        light = sdv_dimmed(light, 1.0 - openness(sdv_box_fetch(box), p, n.xyz, r.w > 0.5), lao_setting_occlusion_strength);
     }
-    if (lao_constant_near_miss != SDV_NEAR_MISS_NONE &&
-        sdv_is_depth_shadow(n.w, r.y, r.x, lao_setting_shadow_ratio, 0.01 * lao_setting_shadow_width * lao_frame.depth.z)) {
-        light = sdv_dimmed(light, 1.0, lao_setting_shadow_strength);
+    if (lao_constant_near_miss != SDV_NEAR_MISS_NONE) {
+        float dark = sdv_depth_shadow(n.w, r.y, r.x, lao_setting_shadow_ratio,
+                                      0.01 * lao_setting_shadow_width * lao_frame.depth.z, lao_setting_shadow_softness);
+        light = sdv_dimmed(light, dark, lao_setting_shadow_strength);
     }
     out_color = vec4(sdv_shade(color, n.xyz, lao_v3_scale(direction, -1.0), lao_setting_surface_ambient,
                                lao_setting_surface_diffuse, lao_setting_surface_specular, lao_constant_surface_shininess,

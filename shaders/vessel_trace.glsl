@@ -4,6 +4,7 @@ LAO_TEX(1, samplerBuffer, cells) /* of sdv_grid, like what follows */
 LAO_TEX(2, samplerBuffer, ids)
 LAO_TEX(3, samplerBuffer, cones)
 LAO_CONSTANT(0, lao_constant_near_miss)
+LAO_CONSTANT(1, lao_constant_supersampling)
 
 LAO_OUT(0, vec4, out_position) /* world, mm; number of the cone, -1: nothing was hit */
 LAO_OUT(1, vec4, out_normal)   /* world, towards the viewer; least distance of a near miss, mm */
@@ -81,8 +82,11 @@ void main() {
     sdv_box around = b;
     float reach = 0.0;
     if (lao_constant_near_miss == SDV_NEAR_MISS_CLOSE) {
-        reach = sdv_near_miss_reach(lao_setting_silhouette, lao_setting_contour, lao_setting_shadow_width,
-                                    lao_frame.depth.z);
+        float zoom = sdv_zoom(lao_frame.scale, lao_frame.depth, lao_frame.depth.x + lao_frame.depth.z,
+                              float(lao_constant_supersampling)); /* at the far end, where a pixel is widest */
+        reach = sdv_near_miss_reach(sdv_outline_width(lao_setting_silhouette, lao_setting_outline_unit, zoom),
+                                    sdv_outline_width(lao_setting_contour, lao_setting_outline_unit, zoom),
+                                    lao_setting_shadow_width, lao_frame.depth.z);
         around = sdv_box_grown(b, reach);
     }
     sdv_march m = sdv_march_start(sdv_ray_box(origin, direction, around));

@@ -101,7 +101,7 @@ static const command_row commands[] = {
      "  lineao vessel lung.vtp --unit cm --color radius -o radius.png\n"
      "  lineao vessel --target 20,10,0,12 --layout risk.json -o risk.png   distances to a tumour\n"
      "  lineao vessel --path -90,0,0:20,10,0 -o needle.png      distances to a needle's path\n"
-     "  lineao vessel --subtract box:0,-200,-200,200,0,200 -o cut.png      cut a corner away\n"
+     "  lineao vessel --subtract box:-200,0,0,0,200,200 -o cut.png          cut a corner away\n"
      "  lineao vessel tree.gxl --style ink --ortho --view coronal -o ink.png\n"
      "  lineao vessel --frames 120 -o turn.mp4                  one turn around it\n"
      "  lineao vessel tree.swc --cameras path.json -o f_%04d.png --dump f_%04d.exr\n"

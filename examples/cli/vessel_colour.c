@@ -9,12 +9,14 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Hue and saturation of the reduced node whose edge a node lies on: what the drawing of the layout
- * shows (L19 3.1). */
+/* Hue and saturation of the reduced node whose edge a node lies on, as the drawing of the layout
+ * shows (L19 3.1); but no branch is white, which a picture with light and shade would not tell from
+ * grey. */
 static void layout_colour(const cli_tree *tree, uint32_t node, double rgb[3]) {
     uint32_t owner = tree->reduced.owners[node];
-    lao_v3 c = owner == SDV_NONE ? lao_v3_make(0.7f, 0.7f, 0.7f)
-                                 : sdv_hsv(tree->layout.h[owner], tree->layout.s[owner], 1.0f);
+    lao_v3 c = owner == SDV_NONE
+                   ? lao_v3_make(0.7f, 0.7f, 0.7f)
+                   : sdv_hsv(tree->layout.h[owner], 0.35f + 0.5f * tree->layout.s[owner], 0.96f);
     rgb[0] = (double)c.x;
     rgb[1] = (double)c.y;
     rgb[2] = (double)c.z;

@@ -120,6 +120,13 @@ static void ray_of(const lao_frame_uniforms *frame, uint32_t x, uint32_t y, sdv_
     ray->direction = lao_ray_direction(frame->world, slope, frame->depth.w);
 }
 
+/* What the default outlines and depth shadows need. */
+static float reach_of(const lao_frame_uniforms *frame) {
+    float zoom = sdv_zoom(frame->scale, frame->depth, frame->depth.x + frame->depth.z, 1);
+    return sdv_near_miss_reach(sdv_outline_width(1.25f, 0, zoom), sdv_outline_width(0.8f, 0, zoom),
+                               1.5f, frame->depth.z);
+}
+
 /* The traced images against C; returns how many pixels hit. */
 static uint32_t check_trace(const scene *s, const subject *tree, const render_result *result) {
     const render_image *position = render_find(result, "vessel_position", 0);
@@ -135,9 +142,8 @@ static uint32_t check_trace(const scene *s, const subject *tree, const render_re
             sdv_hit hit;
             ray_of(&result->frame, x, y, &ray);
             ray.flags = s->vessel.near_miss == SDV_NEAR_MISS_NONE ? 0 : SDV_TRACE_NEAREST;
-            if (s->vessel.near_miss == SDV_NEAR_MISS_CLOSE) {
-                ray.reach = sdv_near_miss_reach(0.5f, 0.25f, 2, result->frame.depth.z);
-            }
+            ray.reach =
+                s->vessel.near_miss == SDV_NEAR_MISS_CLOSE ? reach_of(&result->frame) : 0.0f;
             sdv_trace(&tree->grid, &ray, &hit);
             q = lao_v4_make(hit.position.x, hit.position.y, hit.position.z,
                             hit.cone == SDV_NONE ? -1.0f : (float)hit.cone);
@@ -162,6 +168,81 @@ static uint32_t check_trace(const scene *s, const subject *tree, const render_re
     return hits;
 }
 
+/* ---------------------------------------------------------------------------------------------
+ * vessel_shade in C, from the traced images */
+
+/* Round half to even of v * 255: what the store of a normalised byte does. */
+static uint8_t unorm8(float v) {
+    float scaled = v * 255.0f, low = floorf(scaled), part = scaled - low;
+    uint32_t whole = (uint32_t)low;
+    return (uint8_t)(part > 0.5f || (part == 0.5f && (whole & 1)) ? whole + 1 : whole);
+}
+
+static lao_v3 color_of(const uint8_t *bytes) {
+    return lao_v3_make((float)bytes[0] / 255.0f, (float)bytes[1] / 255.0f,
+                       (float)bytes[2] / 255.0f);
+}
+
+/* What the pixel shows; false: nothing is drawn. */
+static bool shade_of(const subject *tree, const float *v, const lao_frame_uniforms *frame,
+                     const sdv_ray *ray, lao_v4 hit, lao_v4 n, lao_v4 r, lao_v3 *out) {
+    lao_v3 normal = lao_v3_make(n.x, n.y, n.z), p = lao_v3_make(hit.x, hit.y, hit.z);
+    lao_v3 miss = lao_transform(frame->view, lao_v3_along(ray->origin, ray->direction, r.y));
+    float zoom = sdv_zoom(frame->scale, frame->depth, -miss.z, 1);
+    float diameter = frame->depth.z, light = 1;
+    bool missed = hit.w == -1.0f, near = v[SDV_SETTING_ID_near_miss] != SDV_NEAR_MISS_NONE;
+    float width = v[missed ? SDV_SETTING_ID_silhouette : SDV_SETTING_ID_contour];
+    *out = lao_v3_make(0, 0, 0);
+    if (near && n.w < sdv_outline_width(width, v[SDV_SETTING_ID_outline_unit], zoom))
+        return true;
+    if (missed)
+        return false;
+    if (v[SDV_SETTING_ID_field_occlusion] > 0)
+        light = sdv_dimmed(light,
+                           1.0f - sdv_openness(&tree->grid, p, normal,
+                                               0.01f * v[SDV_SETTING_ID_occlusion_reach] * diameter,
+                                               r.w > 0.5f),
+                           v[SDV_SETTING_ID_occlusion_strength]);
+    if (near)
+        light = sdv_dimmed(light,
+                           sdv_depth_shadow(n.w, r.y, r.x, v[SDV_SETTING_ID_shadow_ratio],
+                                            0.01f * v[SDV_SETTING_ID_shadow_width] * diameter,
+                                            v[SDV_SETTING_ID_shadow_softness]),
+                           v[SDV_SETTING_ID_shadow_strength]);
+    const lao_v4 *cone = tree->grid.cones + 2 * (size_t)hit.w;
+    const uint8_t *colors = tree->colors + 8 * (size_t)hit.w;
+    lao_v3 color = sdv_cone_color(p, cone[0], cone[1], color_of(colors), color_of(colors + 4));
+    *out = sdv_shade(color, normal, lao_v3_scale(ray->direction, -1.0f),
+                     v[SDV_SETTING_ID_surface_ambient], v[SDV_SETTING_ID_surface_diffuse],
+                     v[SDV_SETTING_ID_surface_specular],
+                     (lao_int)v[SDV_SETTING_ID_surface_shininess], light);
+    return true;
+}
+
+static void check_shade(const scene *s, const subject *tree, const render_result *result) {
+    const render_image *position = render_find(result, "vessel_position", 0);
+    const render_image *normal = render_find(result, "vessel_normal", 0);
+    const render_image *ray_image = render_find(result, "vessel_ray", 0);
+    const render_image *shaded = render_find(result, "shaded", 0);
+    float values[SDV_SETTING_COUNT];
+    uint32_t wrong = 0, all = 0;
+    assert_true(shaded && shaded->format == LAO_FORMAT_RGBA8);
+    lao_settings_resolve(sdv_module(), &s->vessel, values);
+    for (uint32_t i = 0; i < WIDTH * HEIGHT; i++) {
+        uint32_t x = i % WIDTH, y = i / WIDTH;
+        sdv_ray ray;
+        lao_v3 c;
+        ray_of(&result->frame, x, y, &ray);
+        bool drawn = shade_of(tree, values, &result->frame, &ray, texel_of(position, x, y),
+                              texel_of(normal, x, y), texel_of(ray_image, x, y), &c);
+        const uint8_t bytes[4] = {unorm8(c.x), unorm8(c.y), unorm8(c.z), 255};
+        all += drawn;
+        wrong += drawn && memcmp(bytes, shaded->data + 4 * (size_t)i, 4) != 0;
+    }
+    assert_int_equal(wrong, 0);
+    assert_in_range(all, 300, WIDTH * HEIGHT);
+}
+
 static void same_image(const char *name, const render_result *a, const render_result *b) {
     const render_image *x = render_find(a, name, 0), *y = render_find(b, name, 0);
     assert_true(x && y);
@@ -175,6 +256,7 @@ static void check(scene *s, const subject *tree, uint32_t least_hits) {
         render_need(&devices[i]);
         render_draw(&devices[i], &s->shot, &results[i]);
         assert_in_range(check_trace(s, tree, &results[i]), least_hits, WIDTH * HEIGHT);
+        check_shade(s, tree, &results[i]);
     }
     same_image("zbuffer", &results[0], &results[1]);
     same_image("shaded", &results[0], &results[1]);
