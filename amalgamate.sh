@@ -13,7 +13,7 @@ cd "$(dirname "$0")"
 # Shaders by module; a module's header is where its shared text is.
 MODULES="lines vessel"
 lines_shaders="fullscreen import_depth export_depth cover lines lines_rim lines_halo level_zero level_one level_up occlusion smooth shade resolve present"
-vessel_shaders="vessel_trace vessel_shade"
+vessel_shaders="vessel_trace vessel_carve vessel_shade"
 vessel_header="sdfvessel.h"
 lines_header="" # lineao.h's text stands in front of all
 

@@ -222,7 +222,7 @@ typedef struct flow4d_trace_settings {
 
 /* Lines in order of their seeds. Points lie on the times seed + k step, rising along the line. A
    line holds its seed, so it has one point where no step was possible, and none where the seed is
-   not inside. */
+   not inside. A host may thin the lines in place and lower the two counts. */
 typedef struct flow4d_lines {
     uint32_t line_count, point_count;
     uint32_t *offsets; /* line_count + 1: line i has points offsets[i] .. offsets[i + 1] - 1 */
@@ -234,7 +234,8 @@ typedef struct flow4d_lines {
     float *curvature;  /* point_count, 1/mm, of the circle through a point and its two neighbours,
                           0 at ends; NULL unless asked for */
     double step;       /* ms, that was taken */
-    lao_allocator allocator; /* private */
+    uint32_t line_room, point_room; /* private: what was allocated */
+    lao_allocator allocator;        /* private */
 } flow4d_lines;
 
 /* Integrates lines. Random seeds are uniform in the inside: a random voxel, a random place in it,
@@ -1510,8 +1511,8 @@ static lao_result flow4d__lines_make(const flow4d_host *host, uint32_t attribute
     memset(lines, 0, sizeof *lines);
     memset(view, 0, sizeof *view);
     lines->allocator = *a;
-    lines->line_count = line_count;
-    lines->point_count = point_count;
+    lines->line_count = lines->line_room = line_count;
+    lines->point_count = lines->point_room = point_count;
     lines->offsets = (uint32_t *)flow4d__new(a, (size_t)line_count + 1, sizeof(uint32_t));
     lines->points = view->points = (float *)flow4d__new(a, n, 3 * size);
     lines->times = view->times = (float *)flow4d__new(a, n, size);
@@ -1651,8 +1652,8 @@ void flow4d_lines_free(flow4d_lines *lines) {
     if (!lines || !lines->allocator.release) {
         return;
     }
-    n = lines->point_count;
-    flow4d__delete(&lines->allocator, lines->offsets, (size_t)lines->line_count + 1,
+    n = lines->point_room;
+    flow4d__delete(&lines->allocator, lines->offsets, (size_t)lines->line_room + 1,
                    sizeof(uint32_t));
     flow4d__delete(&lines->allocator, lines->points, n, 3 * sizeof(float));
     flow4d__delete(&lines->allocator, lines->times, n, sizeof(float));

@@ -472,7 +472,10 @@ LAO_API const lao_pass_row *lao_passes(int *count);
     X(show, ENUM, 0, 8, 0, 1, "",                                                                  \
       "picture|occlusion|visibility|depth|light|alignment|visibility_depth|visibility_depth_"      \
       "light|color",                                                                               \
-      "the picture, or factors of the occlusion alone (Koehler 2017, Fig. 4)")
+      "the picture, or factors of the occlusion alone (Koehler 2017, Fig. 4)")                     \
+    X(ao_affects_color, ENUM, 0, 1, 0, 1, "", "multiply|luminance_preserving",                     \
+      "what shading takes from a color: all of it, or saturation only, so that values can be "     \
+      "read")
 
 /* What a line set looks like. A field counts when it is not zero or its bit in `set` is on;
    otherwise the preset's value holds, then the default. So `lao_settings s = {0}` is the
@@ -1859,6 +1862,8 @@ LAO_FN lao_v3 lao_desaturate(lao_v3 color) {
 #define LAO_SHOW_VISIBILITY_DEPTH 6
 #define LAO_SHOW_VISIBILITY_DEPTH_LIGHT 7
 #define LAO_SHOW_COLOR 8
+#define LAO_COLOR_MULTIPLY 0
+#define LAO_COLOR_LUMINANCE_PRESERVING 1
 /* Which factors a sample's weight is made of: all of them, or what the setting `show` singles out
  * (Fig. 4). */
 LAO_FN bool lao_uses_visibility(lao_int show) {
@@ -2024,6 +2029,45 @@ LAO_FN lao_v3 lao_shade(lao_v3 color, lao_v3 t, lao_v3 l, float ambient, float d
     LAO_EXACT float z = (color.z * body + shine) * light;
     return lao_v3_make(lao_clamp01(x), lao_clamp01(y), lao_clamp01(z));
 }
+/* Display value to linear light (sRGB), for targets that encode on write. */
+LAO_FN float lao_srgb_decode(float v) {
+    if (v <= 0.04045f) {
+        return v / 12.92f;
+    }
+    return lao_exp2(2.4f * lao_log2((v + 0.055f) / 1.055f));
+}
+/* Linear light to display value (sRGB). */
+LAO_FN float lao_srgb_encode(float v) {
+    if (v <= 0.0031308f) {
+        return 12.92f * v;
+    }
+    LAO_EXACT float r = 1.055f * lao_exp2(lao_log2(v) / 2.4f) - 0.055f;
+    return r;
+}
+/* What shading may take from the chroma of a color: the fifth that stays keeps its hue. */
+#define LAO_FADE 0.8f
+/* The same light as lao_shade, shown without a change of luminance: the darker it is, the more of
+   the color's chroma gives way to the grey of the same luminance. So a color map whose lightness
+   or hue tells the value stays readable (Koehler 2017, 5.2). No highlight. */
+LAO_FN lao_v3 lao_shade_luminance(lao_v3 color, lao_v3 t, lao_v3 l, float ambient, float diffuse,
+                                  float occlusion) {
+    lao_v3 n = lao_line_normal(t, l);
+    LAO_EXACT float nl = lao_max(lao_v3_dot(n, l), 0.0f);
+    LAO_EXACT float body = lao_clamp01(ambient + diffuse * nl);
+    LAO_EXACT float light = body * (1.0f - lao_clamp01(occlusion));
+    LAO_EXACT float keep = 1.0f - LAO_FADE * (1.0f - light);
+    float r = lao_srgb_decode(color.x);
+    float g = lao_srgb_decode(color.y);
+    float b = lao_srgb_decode(color.z);
+    LAO_EXACT float grey = 0.2126f * r + 0.7152f * g + 0.0722f * b;
+    LAO_EXACT float x = grey + keep * (r - grey);
+    LAO_EXACT float y = grey + keep * (g - grey);
+    LAO_EXACT float z = grey + keep * (b - grey);
+    LAO_EXACT float red = lao_srgb_encode(x);
+    LAO_EXACT float green = lao_srgb_encode(y);
+    LAO_EXACT float blue = lao_srgb_encode(z);
+    return lao_v3_make(lao_clamp01(red), lao_clamp01(green), lao_clamp01(blue));
+}
 /* Sum of `count` premultiplied samples over a premultiplied background. */
 LAO_FN lao_v4 lao_over(lao_v4 sum, float count, lao_v4 background) {
     LAO_EXACT float w = sum.w / count;
@@ -2033,13 +2077,6 @@ LAO_FN lao_v4 lao_over(lao_v4 sum, float count, lao_v4 background) {
     LAO_EXACT float z = sum.z / count + background.z * through;
     LAO_EXACT float a = w + background.w * through;
     return lao_v4_make(x, y, z, a);
-}
-/* Display value to linear light (sRGB), for targets that encode on write. */
-LAO_FN float lao_srgb_decode(float v) {
-    if (v <= 0.04045f) {
-        return v / 12.92f;
-    }
-    return lao_exp2(2.4f * lao_log2((v + 0.055f) / 1.055f));
 }
 /* LAO_SHARED_END */
 

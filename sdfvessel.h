@@ -76,6 +76,8 @@ extern "C" {
     X(GRID_LISTS, LAO_ERROR_INVALID_ARGUMENT,                                                      \
       "more than 2^24 segments or entries of cell lists; fewer cells make shorter lists")          \
     X(GRID_TREE, LAO_ERROR_INVALID_ARGUMENT, "the grid was built from another tree")               \
+    X(SHAPES, LAO_ERROR_INVALID_ARGUMENT,                                                          \
+      "a tree takes at most 64 shapes, of finite numbers, whose samples exist")                    \
     X(RADIUS_MISSING, LAO_OK,                                                                      \
       "nodes have no radius (negative, no number or beyond 1e9 mm): 0 is taken")                   \
     X(RADIUS_ZERO, LAO_OK, "nodes have radius 0")                                                  \
@@ -339,15 +341,13 @@ SDV_API float sdv_grid_distance(const sdv_grid *grid, lao_v3 p, uint32_t *cone);
 /* The same by going through all cones: the oracle. */
 SDV_API float sdv_cones_distance(const lao_v4 *cones, uint32_t count, lao_v3 p, uint32_t *cone);
 
-enum {
-    SDV_TRACE_NEAREST = 1, /* also d_min and t_min */
-    SDV_TRACE_CLOSE = 2    /* the same where d_min is below `reach`, in a fraction of the time */
-};
+enum { SDV_TRACE_NEAREST = 1 /* also d_min and t_min */ };
 
 typedef struct sdv_ray {
     lao_v3 origin, direction; /* mm; unit */
     uint32_t flags;           /* SDV_TRACE_... */
-    float reach;              /* mm, of SDV_TRACE_CLOSE */
+    float reach; /* mm: d_min does not matter beyond this, and may then be too great; 0: it
+                    does, at several times the cost of a ray */
 } sdv_ray;
 
 typedef struct sdv_hit {
@@ -374,21 +374,34 @@ SDV_API void sdv_trace(const sdv_grid *grid, const sdv_ray *ray, sdv_hit *hit);
  * what the field gives for free */
 
 enum { SDV_UNION = 0, SDV_INTERSECTION = 1, SDV_SUBTRACTION = 2 };
-enum { SDV_SHAPE_BALL = 0, SDV_SHAPE_BOX = 1, SDV_SHAPE_PLANE = 2 };
+enum { SDV_SHAPE_BALL = 0, SDV_SHAPE_BOX = 1, SDV_SHAPE_PLANE = 2, SDV_SHAPE_FIELD = 3 };
 
-/* Traces the tree combined with shapes, one after the other (L19 Fig. 11: max(a, -b) and so on):
-   hit->cone is SDV_NONE - 1 where the surface is a shape's, and `shape` (Optional) says which; its
-   normal is the shape's, turned inwards where it cuts. No d_min. Thread: any. */
+/* What a tree is combined with, one after the other (struct sdv_shape, below). `fields` holds the
+   samples of the shapes of kind SDV_SHAPE_FIELD: signed distances, x fastest, none farther from the
+   next than their places are. */
 struct sdv_shape;
+typedef struct sdv_shapes {
+    const struct sdv_shape *shapes;
+    uint32_t count; /* at most SDV_MOST_SHAPES */
+    const float *fields;
+    uint32_t field_count; /* samples of all */
+} sdv_shapes;
+#define SDV_MOST_SHAPES 64u
+
+/* Traces the tree combined with shapes (NULL: none; L19 Fig. 11: max(a, -b) and so on): hit->cone
+   is SDV_NONE - 1 where the surface is a shape's, and `shape` (Optional) says which; its normal is
+   the shape's, turned inwards where it cuts. No d_min. Thread: any. */
 #define SDV_CUT_CONE (SDV_NONE - 1u)
-SDV_API void sdv_trace_shapes(const sdv_grid *grid, const struct sdv_shape *shapes, uint32_t count,
-                              const sdv_ray *ray, sdv_hit *hit, uint32_t *shape);
+SDV_API void sdv_trace_shapes(const sdv_grid *grid, const sdv_shapes *shapes, const sdv_ray *ray,
+                              sdv_hit *hit, uint32_t *shape);
 /* Light that reaches p, 0 .. 1, from the unit direction `light`, past what the field says is near
    the way: 1 / hardness is the light's radius as seen from p. `bias` (mm) is the start, off the
    surface. */
 SDV_API float sdv_shadow(const sdv_grid *grid, lao_v3 p, lao_v3 light, float hardness, float bias);
-/* Openness of p along its normal, 0 .. 1, from the field at 5 places up to `reach` mm away. */
-SDV_API float sdv_openness(const sdv_grid *grid, lao_v3 p, lao_v3 normal, float reach);
+/* Openness of p along its normal, 0 .. 1, from the field at 5 places up to `reach` mm away;
+   `inside` non-zero: of a wall seen from within, the room inside counts. */
+SDV_API float sdv_openness(const sdv_grid *grid, lao_v3 p, lao_v3 normal, float reach,
+                           uint32_t inside);
 
 /* What distances are measured to: a ball, a path, a surface. */
 typedef struct sdv_target_desc {
@@ -443,17 +456,19 @@ SDV_API lao_result sdv_pull_push(const sdv_host *host, const sdv_pull_push_desc 
 #define SDV_SETTINGS(X)                                                                            \
     X(near_miss, ENUM, 0, 2, 0, 1, "", "close|exact|none",                                         \
       "keep how near rays came to other vessels: silhouettes, contours, depth shadows")            \
-    X(silhouette, FLOAT, 0, 1000, 0.5f, 0, "mm", "", "width of the outline around vessels")        \
-    X(contour, FLOAT, 0, 1000, 0.25f, 0, "mm", "", "width of outlines in front of other vessels")  \
+    X(silhouette, FLOAT, 0, 1000, 1.25f, 0, "px", "", "width of the outline around vessels")       \
+    X(contour, FLOAT, 0, 1000, 0.8f, 0, "px", "", "width of outlines in front of other vessels")   \
+    X(outline_unit, ENUM, 0, 1, 0, 0, "", "px|mm", "what both widths are in")                      \
     X(shadow_ratio, FLOAT, 0, 10, 0.15f, 0, "", "",                                                \
       "width of a depth shadow per distance behind the edge (m of L19 Fig. 8)")                    \
-    X(shadow_width, FLOAT, 0, 100, 2, 0, "%", "",                                                  \
+    X(shadow_width, FLOAT, 0, 100, 1.5f, 0, "%", "",                                               \
       "widest depth shadow, of the scene's diameter (a of L19 Fig. 8)")                            \
+    X(shadow_softness, FLOAT, 0, 1, 1, 0, "", "", "how much of a depth shadow fades; 0: none")     \
     X(shadow_strength, FLOAT, 0, 1, 0.6f, 0, "", "", "light that a depth shadow takes away")       \
     X(field_occlusion, BOOL, 0, 1, 1, 1, "", "", "ambient occlusion from the distance field")      \
     X(occlusion_reach, FLOAT, 0.01f, 100, 4, 0, "%", "",                                           \
       "how far field occlusion looks, of the scene's diameter")                                    \
-    X(occlusion_strength, FLOAT, 0, 5, 1, 0, "", "", "light that field occlusion takes away")      \
+    X(occlusion_strength, FLOAT, 0, 5, 0.75f, 0, "", "", "light that field occlusion takes away")  \
     X(surface_ambient, FLOAT, 0, 1, 0.25f, 0, "", "", "ambient part of a surface's illumination")  \
     X(surface_diffuse, FLOAT, 0, 2, 0.7f, 0, "", "", "diffuse part of a surface's illumination")   \
     X(surface_specular, FLOAT, 0, 2, 0.2f, 0, "", "", "specular part of a surface's illumination") \
@@ -484,8 +499,9 @@ SDV_API const lao_module *sdv_module(void);
    must not move, and both must live until lao_object_create or _update returns. */
 typedef struct sdv_object {
     lao_object_desc desc;
-    lao_object_buffer buffers[5];
+    lao_object_buffer buffers[7];
     lao_v4 box[2];
+    lao_v4 shapes[1 + 4 * SDV_MOST_SHAPES];
     uint8_t *colors; /* private */
     lao_allocator allocator;
 } sdv_object;
@@ -495,6 +511,11 @@ typedef struct sdv_object {
    NULL_ARGUMENT, MEMORY. */
 SDV_API lao_result sdv_object_make(const sdv_host *host, const sdv_grid *grid,
                                    const uint8_t *colors, sdv_object *object);
+/* Combines it with shapes, before it is created or in an update. `colors`: (Optional) red, green,
+   blue of the surface of each, display values. `shapes->fields` is referred to. Fails with
+   NULL_ARGUMENT, SHAPES. */
+SDV_API lao_result sdv_object_shapes(const sdv_host *host, const sdv_shapes *shapes,
+                                     const float *colors, sdv_object *object);
 SDV_API void sdv_object_free(sdv_object *object);
 
 #ifdef __cplusplus
@@ -506,67 +527,43 @@ SDV_API void sdv_object_free(sdv_object *object);
    lineao.h's (same rules: see there). */
 /* SDV_SHARED_BEGIN */
 /* ---- round cones (L19 3.2 with METHODS 4): a, b = centre and radius of the two ends, mm */
-/* A point seen from a cone, in the plane of the cone's axis and the point. */
+/* A point seen from a cone: the balls between a and b reach nearest to it from `place`. */
 struct sdv_cone_point {
     float distance; /* signed, mm */
-    float part;     /* -1: ball a is nearest, 1: ball b, 0: the cone between them */
-    float x, y;     /* between: along the axis from a, and away from it */
-    float s, l, d;  /* between: length of the axis, of the tangent; radius of a less that of b */
-    lao_v3 axis;    /* between: unit, from a to b */
-    lao_v3 away;    /* from the axis or the ball's centre to the point, not unit */
+    float place;    /* of the nearest ball, 0 at a, 1 at b */
+    lao_v3 away;    /* from that ball's centre to the point */
     float radial;   /* length of away */
+    lao_v3 axis;    /* from a to b, not unit */
 };
 #ifndef LAO_GLSL
 typedef struct sdv_cone_point sdv_cone_point;
 #endif
-LAO_FN sdv_cone_point sdv_cone_point_ball(sdv_cone_point c, lao_v3 p, lao_v4 ball, float part) {
-    sdv_cone_point r = c;
-    r.away = lao_v3_sub(p, lao_v3_make(ball.x, ball.y, ball.z));
-    LAO_EXACT float length = lao_sqrt(lao_v3_dot(r.away, r.away));
-    r.radial = length;
-    r.distance = length - ball.w;
-    r.part = part;
-    return r;
-}
+/* The three regions of METHODS 4 in one: with x along the axis and y away from it, the centre of
+   the nearest ball is at x - y d / l, and stays between the ends. Where one ball holds the other it
+   is the nearest. */
 LAO_FN sdv_cone_point sdv_cone_point_make(lao_v3 p, lao_v4 a, lao_v4 b) {
     sdv_cone_point c;
     lao_v3 q = lao_v3_sub(p, lao_v3_make(a.x, a.y, a.z));
-    lao_v3 ab = lao_v3_make(b.x - a.x, b.y - a.y, b.z - a.z);
-    LAO_EXACT float s = lao_sqrt(lao_v3_dot(ab, ab));
+    c.axis = lao_v3_make(b.x - a.x, b.y - a.y, b.z - a.z);
+    LAO_EXACT float s = lao_sqrt(lao_v3_dot(c.axis, c.axis));
     LAO_EXACT float d = a.w - b.w;
     LAO_EXACT float least = lao_abs(d) + 1.0e-6f * lao_max(a.w, b.w);
-    c.s = s;
-    c.d = d;
-    c.l = 0.0f;
-    c.x = 0.0f;
-    c.y = 0.0f;
-    c.axis = ab;
-    if (!(s > least)) { /* one ball holds the other */
-        if (d < 0.0f) {
-            return sdv_cone_point_ball(c, p, b, 1.0f);
-        }
-        return sdv_cone_point_ball(c, p, a, -1.0f);
+    LAO_EXACT float place = d < 0.0f ? 1.0f : 0.0f;
+    if (s > least) {
+        LAO_EXACT float inverse = 1.0f / s;
+        LAO_EXACT float foot = lao_v3_dot(q, c.axis) * inverse * inverse;
+        lao_v3 across = lao_v3_along(q, c.axis, -foot);
+        LAO_EXACT float y = lao_sqrt(lao_v3_dot(across, across));
+        LAO_EXACT float l = lao_sqrt((s - d) * (s + d));
+        LAO_EXACT float back = y * (d * inverse / l);
+        place = lao_clamp01(foot - back);
     }
-    LAO_EXACT float inverse = 1.0f / s;
-    c.axis = lao_v3_scale(ab, inverse);
-    LAO_EXACT float x = lao_v3_dot(q, c.axis);
-    c.away = lao_v3_along(q, c.axis, -x);
-    LAO_EXACT float y = lao_sqrt(lao_v3_dot(c.away, c.away));
-    LAO_EXACT float l = lao_sqrt((s - d) * (s + d));
-    LAO_EXACT float u = (l * x - d * y) * inverse;
-    if (u < 0.0f) {
-        return sdv_cone_point_ball(c, p, a, -1.0f);
-    }
-    if (u > l) {
-        return sdv_cone_point_ball(c, p, b, 1.0f);
-    }
-    LAO_EXACT float distance = (d * x + l * y) * inverse - a.w;
+    c.place = place;
+    c.away = lao_v3_along(q, c.axis, -place);
+    LAO_EXACT float radial = lao_sqrt(lao_v3_dot(c.away, c.away));
+    LAO_EXACT float distance = radial - (a.w - place * d);
+    c.radial = radial;
     c.distance = distance;
-    c.part = 0.0f;
-    c.x = x;
-    c.y = y;
-    c.l = l;
-    c.radial = y;
     return c;
 }
 /* Signed distance in mm, exact outside and inside; one ball when it holds the other (Eqs. 1-3,
@@ -592,21 +589,19 @@ LAO_FN lao_v3 sdv_perpendicular(lao_v3 v) {
    ball and on the axis any of the possible ones. */
 LAO_FN lao_v3 sdv_round_cone_gradient(lao_v3 p, lao_v4 a, lao_v4 b) {
     sdv_cone_point c = sdv_cone_point_make(p, a, b);
-    if (c.part != 0.0f) {
-        return lao_v3_unit(c.away, lao_v3_make(0.0f, 0.0f, 1.0f));
+    lao_v3 otherwise = sdv_perpendicular(c.axis);
+    LAO_EXACT float s = lao_sqrt(lao_v3_dot(c.axis, c.axis));
+    LAO_EXACT float d = a.w - b.w;
+    if (s > lao_abs(d)) {
+        LAO_EXACT float outward = lao_sqrt((s - d) * (s + d)) / s;
+        LAO_EXACT float along = d / (s * s);
+        otherwise = lao_v3_along(lao_v3_scale(otherwise, outward), c.axis, along);
     }
-    lao_v3 away = lao_v3_unit(c.away, sdv_perpendicular(c.axis));
-    LAO_EXACT float along = c.d / c.s;
-    LAO_EXACT float outward = c.l / c.s;
-    return lao_v3_unit(lao_v3_along(lao_v3_scale(away, outward), c.axis, along), away);
+    return lao_v3_unit(c.away, otherwise);
 }
 /* Slope of the distance along a unit direction: gradient times direction. */
 LAO_FN float sdv_cone_slope(sdv_cone_point c, lao_v3 direction) {
-    LAO_EXACT float away = lao_v3_dot(c.away, direction) / lao_max(c.radial, 1.0e-30f);
-    if (c.part != 0.0f) {
-        return away;
-    }
-    LAO_EXACT float slope = (c.d * lao_v3_dot(c.axis, direction) + c.l * away) / c.s;
+    LAO_EXACT float slope = lao_v3_dot(c.away, direction) / lao_max(c.radial, 1.0e-30f);
     return slope;
 }
 
@@ -749,11 +744,7 @@ LAO_FN lao_v2 sdv_line_nearest(lao_v3 origin, lao_v3 direction, lao_v4 a, lao_v4
     lao_v4 pb = lao_v4_make(fb.x, fb.y, fb.z, b.w);
     lao_v3 zero = lao_v3_make(0.0f, 0.0f, 0.0f);
     sdv_cone_point c = sdv_cone_point_make(zero, pa, pb);
-    if (c.part != 0.0f) {
-        return lao_v2_make(c.distance, c.part < 0.0f ? ta : tb);
-    }
-    LAO_EXACT float centre = (c.x - c.y * c.d / lao_max(c.l, 1.0e-30f)) / c.s;
-    LAO_EXACT float t = ta + (tb - ta) * lao_clamp01(centre);
+    LAO_EXACT float t = ta + (tb - ta) * c.place;
     return lao_v2_make(c.distance, t);
 }
 
@@ -903,16 +894,16 @@ LAO_FN sdv_march sdv_march_step(sdv_march m, sdv_near n, bool occupied, float fa
     }
     return r;
 }
-/* Whether a place in a cell may be nearer to the tree than `reach`, by the cell's distance: that is
-   up to 1.74 cells too great, and the place up to 0.87 cells from the centre. */
-LAO_FN bool sdv_is_close(float distance, float cell, float reach) {
-    LAO_EXACT float least = distance - 2.625f * cell;
-    return least < reach;
+/* May something as near as `reach` be seen from an empty cell? 0: everything matters. */
+LAO_FN bool sdv_is_within(float far_step, float reach) {
+    return !(reach > 0.0f) || far_step < reach;
 }
-/* The box with a rim of `by` mm. What lies in it is no farther from any place outside than from
-   that place's nearest one inside, so cells serve out there as well. */
-LAO_FN sdv_box sdv_box_grown(sdv_box box, float by) {
+/* Where rays look for near misses: the box, which has 2 cells around the tree, with a rim where
+   that is less than `reach`. What lies in the box is no farther from a place outside than from that
+   place's nearest one inside, so cells serve out there as well. */
+LAO_FN sdv_box sdv_box_grown(sdv_box box, float reach) {
     sdv_box r = box;
+    LAO_EXACT float by = lao_max(reach - 2.0f * box.cell, 0.0f);
     LAO_EXACT float cells = 2.0f * by / box.cell;
     r.origin = lao_v3_make(box.origin.x - by, box.origin.y - by, box.origin.z - by);
     r.size = lao_v3_make(box.size.x + cells, box.size.y + cells, box.size.z + cells);
@@ -930,7 +921,8 @@ LAO_FN float sdv_polish(float t, float distance, lao_v3 gradient, lao_v3 directi
 }
 /* ---- shapes and Boolean operations */
 /* kind: SDV_SHAPE_...; ball: a = centre, radius; box: a = centre, b = half its size; plane: a =
-   unit normal, offset, inside where normal . p < offset. */
+   unit normal, offset, inside where normal . p < offset; field: a = place of the first sample,
+   distance of neighbours; b = samples along each axis, 2 or more, and where the first one is. */
 struct sdv_shape {
     lao_v4 a, b;
     lao_int kind, operation;
@@ -945,12 +937,71 @@ typedef struct sdv_shape sdv_shape;
 #define SDV_SHAPE_BALL 0
 #define SDV_SHAPE_BOX 1
 #define SDV_SHAPE_PLANE 2
+#define SDV_SHAPE_FIELD 3
 #endif
 LAO_FN lao_v3 sdv_box_apart(lao_v3 p, lao_v4 centre, lao_v4 half_size) {
     LAO_EXACT float x = lao_abs(p.x - centre.x) - half_size.x;
     LAO_EXACT float y = lao_abs(p.y - centre.y) - half_size.y;
     LAO_EXACT float z = lao_abs(p.z - centre.z) - half_size.z;
     return lao_v3_make(x, y, z);
+}
+/* A place among the samples of a field: its lowest neighbour, the place between that and the next
+   along each axis, 0 .. 1, and how far outside all samples it is, mm. */
+struct sdv_lattice {
+    lao_v3 part;
+    lao_int at, row, layer; /* first sample; what leads to the next along y and z */
+    float apart;
+};
+#ifndef LAO_GLSL
+typedef struct sdv_lattice sdv_lattice;
+#endif
+LAO_FN lao_v2 sdv_lattice_axis(float p, float low, float cell, float count) {
+    LAO_EXACT float at = lao_min(lao_max((p - low) / cell, 0.0f), count - 1.0f);
+    LAO_EXACT float whole = lao_min(lao_floor(at), count - 2.0f);
+    LAO_EXACT float part = at - whole;
+    return lao_v2_make(whole, part);
+}
+LAO_FN sdv_lattice sdv_lattice_at(lao_v3 p, sdv_shape shape) {
+    lao_v2 x = sdv_lattice_axis(p.x, shape.a.x, shape.a.w, shape.b.x);
+    lao_v2 y = sdv_lattice_axis(p.y, shape.a.y, shape.a.w, shape.b.y);
+    lao_v2 z = sdv_lattice_axis(p.z, shape.a.z, shape.a.w, shape.b.z);
+    sdv_lattice r;
+    r.part = lao_v3_make(x.y, y.y, z.y);
+    r.row = LAO_I(shape.b.x);
+    r.layer = r.row * LAO_I(shape.b.y);
+    r.at = LAO_I(shape.b.w) + LAO_I(x.x) + r.row * LAO_I(y.x) + r.layer * LAO_I(z.x);
+    LAO_EXACT float ex = shape.a.x + (shape.b.x - 1.0f) * shape.a.w;
+    LAO_EXACT float ey = shape.a.y + (shape.b.y - 1.0f) * shape.a.w;
+    LAO_EXACT float ez = shape.a.z + (shape.b.z - 1.0f) * shape.a.w;
+    LAO_EXACT float ox = lao_max(lao_max(shape.a.x - p.x, p.x - ex), 0.0f);
+    LAO_EXACT float oy = lao_max(lao_max(shape.a.y - p.y, p.y - ey), 0.0f);
+    LAO_EXACT float oz = lao_max(lao_max(shape.a.z - p.z, p.z - ez), 0.0f);
+    LAO_EXACT float apart = lao_sqrt(lao_v3_dot(lao_v3_make(ox, oy, oz), lao_v3_make(ox, oy, oz)));
+    r.apart = apart;
+    return r;
+}
+/* Trilinear value (w) and its gradient (x, y, z) from the eight samples around: low z, then high;
+   of each (0, 0), (1, 0), (0, 1), (1, 1). */
+LAO_FN lao_v4 sdv_lattice_value(lao_v3 part, lao_v4 low, lao_v4 high) {
+    LAO_EXACT float x0 = low.x + (low.y - low.x) * part.x;
+    LAO_EXACT float x1 = low.z + (low.w - low.z) * part.x;
+    LAO_EXACT float x2 = high.x + (high.y - high.x) * part.x;
+    LAO_EXACT float x3 = high.z + (high.w - high.z) * part.x;
+    LAO_EXACT float y0 = x0 + (x1 - x0) * part.y;
+    LAO_EXACT float y1 = x2 + (x3 - x2) * part.y;
+    LAO_EXACT float value = y0 + (y1 - y0) * part.z;
+    LAO_EXACT float gz = y1 - y0;
+    LAO_EXACT float gy = (x1 - x0) + ((x3 - x2) - (x1 - x0)) * part.z;
+    LAO_EXACT float d0 = (low.y - low.x) + ((low.w - low.z) - (low.y - low.x)) * part.y;
+    LAO_EXACT float d1 = (high.y - high.x) + ((high.w - high.z) - (high.y - high.x)) * part.y;
+    LAO_EXACT float gx = d0 + (d1 - d0) * part.z;
+    return lao_v4_make(gx, gy, gz, value);
+}
+/* A lower bound of the distance to where the trilinear value is 0: no slope of it is above sqrt(3);
+   outside, the shape is no nearer than the nearest place inside is to it. */
+LAO_FN float sdv_lattice_distance(sdv_lattice at, float value) {
+    LAO_EXACT float d = 0.57f * value;
+    return lao_max(d, at.apart > 0.0f ? at.apart : d);
 }
 LAO_FN float sdv_shape_distance(lao_v3 p, sdv_shape shape) {
     if (shape.kind == SDV_SHAPE_PLANE) {
@@ -1020,6 +1071,23 @@ LAO_FN sdv_solid sdv_solid_add(sdv_solid s, float distance, lao_int operation, l
     return r;
 }
 
+/* Part of a ray in which a tree with shapes is looked for: only a union adds to the tree's box. */
+LAO_FN lao_v2 sdv_solid_span(lao_v2 box, bool united) {
+    if (united) {
+        return lao_v2_make(0.0f, SDV_FAR);
+    }
+    return box;
+}
+/* A lower bound of the tree's distance at p, exact close to the surface and inside, from the
+   least of its cell's list and how far the cell is from any. */
+LAO_FN float sdv_tree_bound(float least, bool occupied, float far_step, float outside, float cell) {
+    float bound = far_step;
+    if (occupied) {
+        bound = lao_min(least, sdv_near_reach(cell));
+    }
+    return outside > 0.0f ? lao_max(bound, outside) : bound;
+}
+
 /* ---- outlines and shadows from d_min (L19 5 with METHODS 5.4); lengths in mm */
 /* Outside the tree, nearer to it than `width`. */
 LAO_FN bool sdv_is_silhouette(bool hit, float d_min, float width) {
@@ -1035,6 +1103,16 @@ LAO_FN bool sdv_is_depth_shadow(float d_min, float t_min, float t, float ratio, 
     LAO_EXACT float depth = lao_abs(t - t_min);
     LAO_EXACT float width = lao_min(ratio * depth, most);
     return d_min < width;
+}
+/* How dark that shadow is, 0 .. 1: the rim of it, a part `softness` of its width, fades. */
+LAO_FN float sdv_depth_shadow(float d_min, float t_min, float t, float ratio, float most,
+                              float softness) {
+    LAO_EXACT float width = lao_min(ratio * lao_abs(t - t_min), most);
+    LAO_EXACT float dark = (1.0f - d_min / lao_max(width, 1.0e-30f)) / lao_max(softness, 1.0e-3f);
+    if (!(d_min < width)) {
+        return 0.0f;
+    }
+    return lao_clamp01(dark);
 }
 /* Soft shadow: `light` so far, 1 at the start, after a sample of the field at t on the way. */
 LAO_FN float sdv_shadow_add(float light, float distance, float t, float hardness) {
@@ -1209,6 +1287,18 @@ LAO_FN float sdv_push_weight(sdv_mix parents, float own) {
 #define SDV_NEAR_MISS_CLOSE 0
 #define SDV_NEAR_MISS_EXACT 1
 #define SDV_NEAR_MISS_NONE 2
+#define SDV_OUTLINE_PX 0
+/* Pixels of the picture per mm at view depth z; scale, depth: of lao_frame_uniforms. */
+LAO_FN float sdv_zoom(lao_v4 scale, lao_v4 depth, float z, float supersampling) {
+    LAO_EXACT float across = (depth.w > 0.5f ? 1.0f : lao_max(z, 1.0e-6f)) * supersampling;
+    LAO_EXACT float r = lao_abs(scale.y) / across;
+    return r;
+}
+/* An outline's width in mm. */
+LAO_FN float sdv_outline_width(float width, float unit, float zoom) {
+    LAO_EXACT float mm = width / zoom;
+    return unit > 0.5f ? width : mm;
+}
 /* How near to a vessel a ray must pass for anything to be drawn of it, mm. `shadow`: % of the
    diameter. */
 LAO_FN float sdv_near_miss_reach(float silhouette, float contour, float shadow, float diameter) {
@@ -3462,8 +3552,7 @@ static sdv_march sdv__least(const sdv_grid *g, const sdv_ray *ray, sdv_march m) 
         span = sdv_least_span(ray->origin, ray->direction, box, m.low);
         t = i == 0 ? span.x : t + sdv_least_step(n, cell->w > 0.0f, cell->z, m.low, g->cell);
     }
-    m.d_min = SDV_FAR;
-    return sdv__minimum(g, ray, m, m.low_cone, 0.0f, SDV_FAR);
+    return m;
 }
 
 /* On to the surface from a point close to it. */
@@ -3488,32 +3577,28 @@ static void sdv__land(const sdv_grid *g, const sdv_ray *ray, const sdv_march *m,
 
 SDV_API void sdv_trace(const sdv_grid *grid, const sdv_ray *ray, sdv_hit *hit) {
     sdv_box box = sdv__grid_box(grid);
-    int exact = (ray->flags & SDV_TRACE_NEAREST) != 0, i;
-    int close = !exact && (ray->flags & SDV_TRACE_CLOSE);
+    int nearest = (ray->flags & SDV_TRACE_NEAREST) != 0, i;
     lao_v2 span =
-        sdv_ray_box(ray->origin, ray->direction, close ? sdv_box_grown(box, ray->reach) : box);
+        sdv_ray_box(ray->origin, ray->direction, nearest ? sdv_box_grown(box, ray->reach) : box);
     sdv_march m = sdv_march_start(span);
     for (i = 0; i < SDV_MAX_STEPS && m.state == SDV_MARCH_GOES; i++) {
         lao_v3 p = lao_v3_along(ray->origin, ray->direction, m.t);
         const lao_v4 *cell = sdv__cell_at(grid, p);
         bool occupied = cell->w > 0.0f;
         sdv_near n = sdv_near_start(0.0f);
-        if (occupied || exact || (close && sdv_is_close(cell->x, grid->cell, ray->reach))) {
+        if (occupied || (nearest && sdv_is_within(cell->z, ray->reach))) {
             n = sdv__near_at(grid, cell, p, ray->direction);
         }
-        if (exact) {
+        if (nearest) {
             m = sdv__note(grid, ray, m, n);
-        }
-        if ((exact || close) && sdv_march_passed(m, n)) {
-            m = sdv__minimum(grid, ray, m, m.cone, m.older, m.t);
+            m = sdv_march_passed(m, n) ? sdv__minimum(grid, ray, m, m.cone, m.older, m.t) : m;
         }
         m = sdv_march_step(m, n, occupied, cell->z, grid->cell);
     }
-    if (exact && m.state != SDV_MARCH_HITS) {
-        m = sdv__least(grid, ray, m);
-    }
-    if (close && m.state != SDV_MARCH_HITS && m.falling > 0.5f && m.inside < 0.5f) {
-        m = sdv__minimum(grid, ray, m, m.cone, m.older, SDV_FAR);
+    if (nearest && m.state != SDV_MARCH_HITS) {
+        m = ray->reach > 0.0f ? m : sdv__least(grid, ray, m);
+        m.d_min = SDV_FAR;
+        m = sdv__minimum(grid, ray, m, m.low_cone, 0.0f, SDV_FAR);
     }
     memset(hit, 0, sizeof *hit);
     hit->cone = SDV_NONE;
@@ -3531,38 +3616,61 @@ SDV_API void sdv_trace(const sdv_grid *grid, const sdv_ray *ray, sdv_hit *hit) {
 /* A lower bound of the tree's distance, exact close to the surface and inside. */
 static float sdv__tree_bound(const sdv_grid *g, lao_v3 p, uint32_t *cone) {
     const lao_v4 *cell = sdv__cell_at(g, p);
-    float bound = cell->z, outside;
-    if (cell->w > 0.0f) {
-        bound = lao_min(sdv__list_distance(g, cell, p, cone), sdv_near_reach(g->cell));
-    }
-    outside = sdv_box_distance(p, sdv__grid_box(g));
-    return outside > 0.0f ? lao_max(bound, outside) : bound;
+    float least = cell->w > 0.0f ? sdv__list_distance(g, cell, p, cone) : SDV_FAR;
+    return sdv_tree_bound(least, cell->w > 0.0f, cell->z, sdv_box_distance(p, sdv__grid_box(g)),
+                          g->cell);
 }
-static sdv_solid sdv__solid_at(const sdv_grid *g, const sdv_shape *shapes, uint32_t count, lao_v3 p,
+static lao_v4 sdv__four(const float *at, lao_int row) {
+    return lao_v4_make(at[0], at[1], at[row], at[row + 1]);
+}
+static lao_v4 sdv__field_value(const sdv_shapes *shapes, const sdv_lattice *l) {
+    const float *at = shapes->fields + l->at;
+    return sdv_lattice_value(l->part, sdv__four(at, l->row), sdv__four(at + l->layer, l->row));
+}
+static float sdv__shape_distance(const sdv_shapes *shapes, uint32_t i, lao_v3 p) {
+    sdv_lattice l;
+    if (shapes->shapes[i].kind != SDV_SHAPE_FIELD) {
+        return sdv_shape_distance(p, shapes->shapes[i]);
+    }
+    l = sdv_lattice_at(p, shapes->shapes[i]);
+    return sdv_lattice_distance(l, sdv__field_value(shapes, &l).w);
+}
+static lao_v3 sdv__shape_gradient(const sdv_shapes *shapes, lao_int i, lao_v3 p) {
+    sdv_lattice l;
+    lao_v4 v;
+    if (shapes->shapes[i].kind != SDV_SHAPE_FIELD) {
+        return sdv_shape_gradient(p, shapes->shapes[i]);
+    }
+    l = sdv_lattice_at(p, shapes->shapes[i]);
+    v = sdv__field_value(shapes, &l);
+    return lao_v3_unit(lao_v3_make(v.x, v.y, v.z), lao_v3_make(0.0f, 0.0f, 1.0f));
+}
+static sdv_solid sdv__solid_at(const sdv_grid *g, const sdv_shapes *shapes, lao_v3 p,
                                uint32_t *cone) {
     sdv_solid s = sdv_solid_start(sdv__tree_bound(g, p, cone));
     uint32_t i;
-    for (i = 0; i < count; i++) {
-        s = sdv_solid_add(s, sdv_shape_distance(p, shapes[i]), shapes[i].operation, (lao_int)i);
+    for (i = 0; i < shapes->count; i++) {
+        s = sdv_solid_add(s, sdv__shape_distance(shapes, i, p), shapes->shapes[i].operation,
+                          (lao_int)i);
     }
     return s;
 }
-static lao_v3 sdv__solid_gradient(const sdv_grid *g, const sdv_shape *shapes, const sdv_solid *s,
+static lao_v3 sdv__solid_gradient(const sdv_grid *g, const sdv_shapes *shapes, const sdv_solid *s,
                                   lao_v3 p, uint32_t cone) {
     if (s->part >= 0) {
-        return lao_v3_scale(sdv_shape_gradient(p, shapes[s->part]), s->side);
+        return lao_v3_scale(sdv__shape_gradient(shapes, s->part, p), s->side);
     }
     return sdv_round_cone_gradient(p, g->cones[2 * (size_t)cone], g->cones[2 * (size_t)cone + 1]);
 }
-static void sdv__solid_land(const sdv_grid *g, const sdv_shape *shapes, uint32_t count,
-                            const sdv_ray *ray, float t, sdv_hit *hit, uint32_t *shape) {
+static void sdv__solid_land(const sdv_grid *g, const sdv_shapes *shapes, const sdv_ray *ray,
+                            float t, sdv_hit *hit, uint32_t *shape) {
     lao_v3 gradient;
     int i;
     for (i = 0; i <= SDV_POLISH_ROUNDS; i++) {
         uint32_t cone = 0;
         sdv_solid s;
         hit->position = lao_v3_along(ray->origin, ray->direction, t);
-        s = sdv__solid_at(g, shapes, count, hit->position, &cone);
+        s = sdv__solid_at(g, shapes, hit->position, &cone);
         gradient = sdv__solid_gradient(g, shapes, &s, hit->position, cone);
         hit->cone = s.part >= 0 ? SDV_CUT_CONE : cone;
         hit->normal = hit->inside ? lao_v3_scale(gradient, -1.0f) : gradient;
@@ -3573,26 +3681,40 @@ static void sdv__solid_land(const sdv_grid *g, const sdv_shape *shapes, uint32_t
         t = sdv_polish(t, s.distance, gradient, ray->direction, g->cell);
     }
 }
+static bool sdv__united(const sdv_shapes *shapes) {
+    uint32_t i;
+    for (i = 0; i < shapes->count; i++) {
+        if (shapes->shapes[i].operation == SDV_UNION) {
+            return true;
+        }
+    }
+    return false;
+}
 
-SDV_API void sdv_trace_shapes(const sdv_grid *grid, const sdv_shape *shapes, uint32_t count,
-                              const sdv_ray *ray, sdv_hit *hit, uint32_t *shape) {
-    float t = 0.0f;
+SDV_API void sdv_trace_shapes(const sdv_grid *grid, const sdv_shapes *shapes, const sdv_ray *ray,
+                              sdv_hit *hit, uint32_t *shape) {
+    static const sdv_shapes none = {NULL, 0, NULL, 0};
+    lao_v2 span = sdv_ray_box(ray->origin, ray->direction, sdv__grid_box(grid));
     uint32_t cone = 0, i;
+    float t;
+    shapes = shapes ? shapes : &none;
+    span = sdv_solid_span(span, sdv__united(shapes));
+    t = span.x;
     memset(hit, 0, sizeof *hit);
     hit->cone = SDV_NONE;
     hit->d_min = SDV_FAR;
     if (shape) {
         *shape = SDV_NONE;
     }
-    for (i = 0; i < SDV_MAX_STEPS && t < SDV_FAR; i++) {
+    for (i = 0; i < SDV_MAX_STEPS && t <= span.y; i++) {
         lao_v3 p = lao_v3_along(ray->origin, ray->direction, t);
-        sdv_solid s = sdv__solid_at(grid, shapes, count, p, &cone);
+        sdv_solid s = sdv__solid_at(grid, shapes, p, &cone);
         float left;
         hit->inside = i == 0 ? s.distance < 0.0f : hit->inside;
         left = hit->inside ? -s.distance : s.distance;
         hit->steps++;
         if (left < sdv_hit_distance(grid->cell)) {
-            sdv__solid_land(grid, shapes, count, ray, t, hit, shape);
+            sdv__solid_land(grid, shapes, ray, t, hit, shape);
             return;
         }
         t += left;
@@ -3613,13 +3735,15 @@ SDV_API float sdv_shadow(const sdv_grid *grid, lao_v3 p, lao_v3 light, float har
     }
     return lit;
 }
-SDV_API float sdv_openness(const sdv_grid *grid, lao_v3 p, lao_v3 normal, float reach) {
+SDV_API float sdv_openness(const sdv_grid *grid, lao_v3 p, lao_v3 normal, float reach,
+                           uint32_t inside) {
     float closed = 0.0f;
     lao_int i;
     for (i = 0; i < SDV_OPEN_SAMPLES && reach > 0.0f; i++) {
         float place = sdv_open_place(reach, i);
         lao_v3 q = lao_v3_along(p, normal, place);
-        closed = sdv_open_add(closed, sdv_grid_distance(grid, q, NULL), place, i);
+        float d = sdv_grid_distance(grid, q, NULL);
+        closed = sdv_open_add(closed, inside ? -d : d, place, i);
     }
     return sdv_open_result(closed);
 }
@@ -3847,8 +3971,13 @@ SDV_API float sdv_target_cone(const sdv_target *target, lao_v4 a, lao_v4 b) {
         }
         i = (node - target->leaf_count) * SDV__PIECES;
         for (node = i; node < i + SDV__PIECES && node < target->piece_count; node++) {
-            float d = sdv__piece_cone(target->pieces + node, a, b);
-            least = d < least ? d : least;
+            const sdv__piece *s = target->pieces + node;
+            lao_v3 low = s->u, high = s->u;
+            sdv__box_grow(&low, &high, s->v);
+            sdv__box_grow(&low, &high, s->w);
+            if (sdv__ball_cone(sdv__box_ball(&low, &high), a, b) < least) {
+                least = lao_min(least, sdv__piece_cone(s, a, b));
+            }
         }
     }
     return least - target->radius;
@@ -4097,11 +4226,13 @@ SDV_API lao_result sdv_pull_push(const sdv_host *host, const sdv_pull_push_desc 
 #define SDV__WRITE(image) {image, LAO_LEVEL_SAME, 0, LAO_PHASE_THIS, LAO_LOAD_DISCARD}
 #define SDV__READ(image) {image, LAO_LEVEL_SAME, 0, LAO_PHASE_THIS, LAO_LOAD_DISCARD}
 #define SDV__KEEP(image) {image, LAO_LEVEL_SAME, 0, LAO_PHASE_THIS, LAO_LOAD_KEEP}
-#define SDV__WITH_TREE {{"#vessel_cells", '>', 0}}
+#define SDV__WITH_TREE {{"#vessel_cells", '>', 0}, {"#vessel_shapes", '=', 0}}
+#define SDV__WITH_SHAPES {{"#vessel_cells", '>', 0}, {"#vessel_shapes", '>', 0}}
 
 static const lao_buffer_row sdv__buffers[] = {
     {"vessel_box", LAO_FORMAT_RGBA32F}, {"vessel_cells", LAO_FORMAT_RGBA32F}, {"vessel_ids", LAO_FORMAT_R32F},
-    {"vessel_cones", LAO_FORMAT_RGBA32F}, {"vessel_colors", LAO_FORMAT_RGBA8}
+    {"vessel_cones", LAO_FORMAT_RGBA32F}, {"vessel_colors", LAO_FORMAT_RGBA8},
+    {"vessel_shapes", LAO_FORMAT_RGBA32F}, {"vessel_fields", LAO_FORMAT_R32F}
 };
 
 static const lao_image_row sdv__images[] = {
@@ -4114,10 +4245,19 @@ static const lao_pass_row sdv__passes[] = {
     {"vessel_trace", LAO_PASS_FULLSCREEN, "vessel_trace", 0, LAO_STAGE_DRAW, LAO_SCOPE_PER_SET, LAO_REPEAT_NONE, NULL, LAO_BLEND_NONE, LAO_DEPTH_NONE, LAO_CULL_NONE, SDV__WITH_TREE,
      {SDV__WRITE("vessel_position"), SDV__WRITE("vessel_normal"), SDV__WRITE("vessel_ray")},
      {SDV__READ("#vessel_box"), SDV__READ("#vessel_cells"), SDV__READ("#vessel_ids"), SDV__READ("#vessel_cones")}},
+    {"vessel_carve", LAO_PASS_FULLSCREEN, "vessel_carve", 0, LAO_STAGE_DRAW, LAO_SCOPE_PER_SET, LAO_REPEAT_NONE, NULL, LAO_BLEND_NONE, LAO_DEPTH_NONE, LAO_CULL_NONE, SDV__WITH_SHAPES,
+     {SDV__WRITE("vessel_position"), SDV__WRITE("vessel_normal"), SDV__WRITE("vessel_ray")},
+     {SDV__READ("#vessel_box"), SDV__READ("#vessel_cells"), SDV__READ("#vessel_ids"), SDV__READ("#vessel_cones"), SDV__READ("#vessel_shapes"), SDV__READ("#vessel_fields")}},
     {"vessel_shade", LAO_PASS_FULLSCREEN, "vessel_shade", 0, LAO_STAGE_SHADE, LAO_SCOPE_PER_SET, LAO_REPEAT_NONE, NULL, LAO_BLEND_NONE, LAO_DEPTH_NEARER, LAO_CULL_NONE, SDV__WITH_TREE,
      {SDV__KEEP("shaded"), SDV__KEEP("zbuffer")},
      {SDV__READ("vessel_position"), SDV__READ("vessel_normal"), SDV__READ("vessel_ray"), SDV__READ("#vessel_colors"),
-      SDV__READ("#vessel_box"), SDV__READ("#vessel_cells"), SDV__READ("#vessel_ids"), SDV__READ("#vessel_cones")}}
+      SDV__READ("#vessel_box"), SDV__READ("#vessel_cells"), SDV__READ("#vessel_ids"), SDV__READ("#vessel_cones"),
+      SDV__READ("#vessel_shapes"), SDV__READ("#vessel_fields")}},
+    {"vessel_shade_cut", LAO_PASS_FULLSCREEN, "vessel_shade", 1, LAO_STAGE_SHADE, LAO_SCOPE_PER_SET, LAO_REPEAT_NONE, NULL, LAO_BLEND_NONE, LAO_DEPTH_NEARER, LAO_CULL_NONE, SDV__WITH_SHAPES,
+     {SDV__KEEP("shaded"), SDV__KEEP("zbuffer")},
+     {SDV__READ("vessel_position"), SDV__READ("vessel_normal"), SDV__READ("vessel_ray"), SDV__READ("#vessel_colors"),
+      SDV__READ("#vessel_box"), SDV__READ("#vessel_cells"), SDV__READ("#vessel_ids"), SDV__READ("#vessel_cones"),
+      SDV__READ("#vessel_shapes"), SDV__READ("#vessel_fields")}}
 };
 
 static const lao_setting_row sdv__settings[] = {
@@ -4189,6 +4329,55 @@ SDV_API lao_result sdv_object_make(const sdv_host *host, const sdv_grid *grid,
             object->desc.bounds[0][k] = i ? lao_min(object->desc.bounds[0][k], low) : low;
             object->desc.bounds[1][k] = i ? lao_max(object->desc.bounds[1][k], high) : high;
         }
+    }
+    return LAO_OK;
+}
+
+static bool sdv__shape_fits(const sdv_shape *s, uint32_t field_count) {
+    const float *v = &s->a.x, *w = &s->b.x;
+    double size = (double)s->b.x * (double)s->b.y * (double)s->b.z;
+    int i;
+    for (i = 0; i < 4; i++) {
+        if (!(fabsf(v[i]) <= 1e9f && fabsf(w[i]) <= 1e9f)) {
+            return false;
+        }
+    }
+    return s->kind != SDV_SHAPE_FIELD ||
+           (s->a.w > 0.0f && s->b.x >= 2.0f && s->b.y >= 2.0f && s->b.z >= 2.0f && s->b.w >= 0.0f &&
+            (double)s->b.w + size <= field_count);
+}
+
+SDV_API lao_result sdv_object_shapes(const sdv_host *host, const sdv_shapes *shapes,
+                                     const float *colors, sdv_object *object) {
+    uint32_t i;
+    if (!object || !shapes || (shapes->count && !shapes->shapes)) {
+        return sdv__fail(host, SDV_LOG_NULL_ARGUMENT, "sdv_object_shapes");
+    }
+    if (shapes->count > SDV_MOST_SHAPES || (shapes->field_count && !shapes->fields) ||
+        shapes->field_count > 1u << 24) {
+        return sdv__fail(host, SDV_LOG_SHAPES, "%u shapes", shapes->count);
+    }
+    for (i = 0; i < shapes->count; i++) {
+        if (!sdv__shape_fits(&shapes->shapes[i], shapes->field_count)) {
+            return sdv__fail(host, SDV_LOG_SHAPES, "shape %u", i);
+        }
+    }
+    object->shapes[0] =
+        lao_v4_make((float)shapes->count, sdv__united(shapes) ? 1.0f : 0.0f, 0.0f, 0.0f);
+    for (i = 0; i < shapes->count; i++) {
+        const sdv_shape *s = &shapes->shapes[i];
+        lao_v4 *to = object->shapes + 1 + 4 * i;
+        to[0] = s->a;
+        to[1] = s->b;
+        to[2] = lao_v4_make((float)s->kind, (float)s->operation, 0.0f, 0.0f);
+        to[3] = colors ? lao_v4_make(colors[3 * i], colors[3 * i + 1], colors[3 * i + 2], 1.0f)
+                       : lao_v4_make(0.93f, 0.86f, 0.72f, 1.0f);
+    }
+    sdv__object_buffer(object, 5, object->shapes, 1 + 4 * shapes->count);
+    object->desc.buffer_count = 6;
+    if (shapes->field_count) {
+        sdv__object_buffer(object, 6, shapes->fields, shapes->field_count);
+        object->desc.buffer_count = 7;
     }
     return LAO_OK;
 }

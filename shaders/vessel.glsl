@@ -22,3 +22,66 @@ sdv_near sdv_near_at(samplerBuffer cells, samplerBuffer ids, samplerBuffer cones
     }
     return n;
 }
+/* ---- the tree with shapes: sdv_trace_shapes. The buffer begins with their number, and 1 where one is a union. */
+sdv_shape sdv_shape_fetch(samplerBuffer shapes, int i) {
+    vec4 kind = texelFetch(shapes, 3 + 4 * i);
+    sdv_shape s;
+    s.a = texelFetch(shapes, 1 + 4 * i);
+    s.b = texelFetch(shapes, 2 + 4 * i);
+    s.kind = int(kind.x);
+    s.operation = int(kind.y);
+    return s;
+}
+vec4 sdv_four_fetch(samplerBuffer fields, int at, int row) {
+    return vec4(texelFetch(fields, at).x, texelFetch(fields, at + 1).x, texelFetch(fields, at + row).x,
+                texelFetch(fields, at + row + 1).x);
+}
+vec4 sdv_field_value(samplerBuffer fields, sdv_lattice l) {
+    return sdv_lattice_value(l.part, sdv_four_fetch(fields, l.at, l.row), sdv_four_fetch(fields, l.at + l.layer, l.row));
+}
+float sdv_shape_distance_at(samplerBuffer fields, sdv_shape s, lao_v3 p) {
+    if (s.kind != SDV_SHAPE_FIELD) {
+        return sdv_shape_distance(p, s);
+    }
+    sdv_lattice l = sdv_lattice_at(p, s);
+    return sdv_lattice_distance(l, sdv_field_value(fields, l).w);
+}
+lao_v3 sdv_shape_gradient_at(samplerBuffer fields, sdv_shape s, lao_v3 p) {
+    if (s.kind != SDV_SHAPE_FIELD) {
+        return sdv_shape_gradient(p, s);
+    }
+    vec4 v = sdv_field_value(fields, sdv_lattice_at(p, s));
+    return lao_v3_unit(v.xyz, lao_v3_make(0.0, 0.0, 1.0));
+}
+sdv_solid sdv_solid_add_all(samplerBuffer shapes, samplerBuffer fields, sdv_solid start, lao_v3 p) {
+    sdv_solid r = start;
+    int count = int(texelFetch(shapes, 0).x);
+    for (int i = 0; i < count; i++) {
+        sdv_shape s = sdv_shape_fetch(shapes, i);
+        r = sdv_solid_add(r, sdv_shape_distance_at(fields, s, p), s.operation, i);
+    }
+    return r;
+}
+/* The distance, and the number of the nearest cone of the cell's list (-1: it has none). */
+struct sdv_solid_sample {
+    sdv_solid solid;
+    float cone;
+};
+sdv_solid_sample sdv_solid_at(samplerBuffer cells, samplerBuffer ids, samplerBuffer cones, samplerBuffer shapes,
+                              samplerBuffer fields, sdv_box box, lao_v3 p) {
+    sdv_solid_sample r;
+    vec4 cell = texelFetch(cells, sdv_cell_at(box, p));
+    float least = SDV_FAR;
+    r.cone = -1.0;
+    for (int i = 0; i < int(cell.w); i++) {
+        float id = texelFetch(ids, int(cell.z) + i).x;
+        float d = sdv_round_cone(p, texelFetch(cones, 2 * int(id)), texelFetch(cones, 2 * int(id) + 1));
+        if (d < least) {
+            least = d;
+            r.cone = id;
+        }
+    }
+    sdv_solid tree = sdv_solid_start(sdv_tree_bound(least, cell.w > 0.0, cell.z, sdv_box_distance(p, box), box.cell));
+    r.solid = sdv_solid_add_all(shapes, fields, tree, p);
+    return r;
+}

@@ -8,25 +8,34 @@ LAO_TEX(4, samplerBuffer, box)
 LAO_TEX(5, samplerBuffer, cells)
 LAO_TEX(6, samplerBuffer, ids)
 LAO_TEX(7, samplerBuffer, cones)
+LAO_TEX(8, samplerBuffer, shapes) /* with variant 1 */
+LAO_TEX(9, samplerBuffer, fields)
 LAO_CONSTANT(0, lao_constant_near_miss)
 LAO_CONSTANT(1, lao_constant_surface_shininess)
 LAO_CONSTANT(2, lao_constant_field_occlusion)
+LAO_CONSTANT(3, lao_constant_variant) /* 1: with shapes */
+LAO_CONSTANT(4, lao_constant_supersampling)
 
 LAO_OUT(0, vec4, out_color)
 
 #ifdef LAO_FRAGMENT
 /* Signed distance at p, from the list of its cell. */
 float field_at(sdv_box b, lao_v3 p) {
-    return sdv_near_at(cells, ids, cones, b, texelFetch(cells, sdv_cell_at(b, p)), p, lao_v3_make(0.0, 0.0, 1.0)).distance;
+    float d = sdv_near_at(cells, ids, cones, b, texelFetch(cells, sdv_cell_at(b, p)), p, lao_v3_make(0.0, 0.0, 1.0)).distance;
+    if (lao_constant_variant != 0) {
+        d = sdv_solid_add_all(shapes, fields, sdv_solid_start(d), p).distance;
+    }
+    return d;
 }
 
-/* Openness of p along its normal: sdv_openness. */
-float openness(sdv_box b, lao_v3 p, lao_v3 n) {
+/* Openness of p along its normal: sdv_openness; from within a vessel the room inside counts. */
+float openness(sdv_box b, lao_v3 p, lao_v3 n, bool inside) {
     float reach = 0.01 * lao_setting_occlusion_reach * lao_frame.depth.z;
     float closed = 0.0;
     for (int i = 0; i < SDV_OPEN_SAMPLES; i++) {
         float place = sdv_open_place(reach, i);
-        closed = sdv_open_add(closed, field_at(b, lao_v3_along(p, n, place)), place, i);
+        float d = field_at(b, lao_v3_along(p, n, place));
+        closed = sdv_open_add(closed, inside ? -d : d, place, i);
     }
     return sdv_open_result(closed);
 }
@@ -39,10 +48,18 @@ void main() {
     lao_v2 slope = lao_pixel_slope(lao_frame.ray, float(pixel.x) + 0.5, float(pixel.y) + 0.5);
     lao_v3 origin = lao_ray_origin(lao_frame.world, slope, lao_frame.depth.w);
     lao_v3 direction = lao_ray_direction(lao_frame.world, slope, lao_frame.depth.w);
-    bool missed = hit.w < 0.0;
-    bool outlined = lao_constant_near_miss != SDV_NEAR_MISS_NONE &&
-                    (missed ? sdv_is_silhouette(false, n.w, lao_setting_silhouette)
-                            : sdv_is_contour(n.w, lao_setting_contour));
+    bool missed = hit.w == -1.0;
+    lao_v3 near_miss = lao_transform(lao_frame.view, lao_v3_along(origin, direction, r.y));
+    float zoom = sdv_zoom(lao_frame.scale, lao_frame.depth, -near_miss.z, float(lao_constant_supersampling));
+    bool outlined = false;
+    if (lao_constant_near_miss != SDV_NEAR_MISS_NONE) {
+        if (missed) {
+            outlined =
+                sdv_is_silhouette(false, n.w, sdv_outline_width(lao_setting_silhouette, lao_setting_outline_unit, zoom));
+        } else {
+            outlined = sdv_is_contour(n.w, sdv_outline_width(lao_setting_contour, lao_setting_outline_unit, zoom));
+        }
+    }
     if (missed && !outlined) {
         discard;
     }
@@ -53,16 +70,22 @@ void main() {
         out_color = vec4(0.0, 0.0, 0.0, 1.0);
         return;
     }
-    int at = 2 * int(hit.w);
-    lao_v3 color = sdv_cone_color(p, texelFetch(cones, at), texelFetch(cones, at + 1), texelFetch(colors, at).xyz,
-                                  texelFetch(colors, at + 1).xyz);
+    lao_v3 color;
+    if (lao_constant_variant != 0 && hit.w < 0.0) {
+        color = texelFetch(shapes, 4 + 4 * int(r.y)).xyz;
+    } else {
+        int at = 2 * int(hit.w);
+        color = sdv_cone_color(p, texelFetch(cones, at), texelFetch(cones, at + 1), texelFetch(colors, at).xyz,
+                               texelFetch(colors, at + 1).xyz);
+    }
     LAO_EXACT float light = 1.0;
     if (lao_constant_field_occlusion != 0) {
-        light = sdv_dimmed(light, 1.0 - openness(sdv_box_fetch(box), p, n.xyz), lao_setting_occlusion_strength);
+        light = sdv_dimmed(light, 1.0 - openness(sdv_box_fetch(box), p, n.xyz, r.w > 0.5), lao_setting_occlusion_strength);
     }
-    if (lao_constant_near_miss != SDV_NEAR_MISS_NONE &&
-        sdv_is_depth_shadow(n.w, r.y, r.x, lao_setting_shadow_ratio, 0.01 * lao_setting_shadow_width * lao_frame.depth.z)) {
-        light = sdv_dimmed(light, 1.0, lao_setting_shadow_strength);
+    if (lao_constant_near_miss != SDV_NEAR_MISS_NONE) {
+        float dark = sdv_depth_shadow(n.w, r.y, r.x, lao_setting_shadow_ratio,
+                                      0.01 * lao_setting_shadow_width * lao_frame.depth.z, lao_setting_shadow_softness);
+        light = sdv_dimmed(light, dark, lao_setting_shadow_strength);
     }
     out_color = vec4(sdv_shade(color, n.xyz, lao_v3_scale(direction, -1.0), lao_setting_surface_ambient,
                                lao_setting_surface_diffuse, lao_setting_surface_specular, lao_constant_surface_shininess,

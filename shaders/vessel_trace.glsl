@@ -4,6 +4,7 @@ LAO_TEX(1, samplerBuffer, cells) /* of sdv_grid, like what follows */
 LAO_TEX(2, samplerBuffer, ids)
 LAO_TEX(3, samplerBuffer, cones)
 LAO_CONSTANT(0, lao_constant_near_miss)
+LAO_CONSTANT(1, lao_constant_supersampling)
 
 LAO_OUT(0, vec4, out_position) /* world, mm; number of the cone, -1: nothing was hit */
 LAO_OUT(1, vec4, out_normal)   /* world, towards the viewer; least distance of a near miss, mm */
@@ -53,8 +54,7 @@ sdv_march least(sdv_box b, lao_v3 origin, lao_v3 direction, sdv_march start) {
         span = sdv_least_span(origin, direction, b, m.low);
         t = i == 0 ? span.x : t + sdv_least_step(n, cell.w > 0.0, cell.z, m.low, b.cell);
     }
-    m.d_min = SDV_FAR;
-    return minimum(b, origin, direction, m, m.low_cone, 0.0, SDV_FAR);
+    return m;
 }
 
 /* On to the surface from a point close to it. */
@@ -78,12 +78,15 @@ void main() {
     lao_v3 origin = lao_ray_origin(lao_frame.world, slope, lao_frame.depth.w);
     lao_v3 direction = lao_ray_direction(lao_frame.world, slope, lao_frame.depth.w);
     sdv_box b = sdv_box_fetch(box);
-    bool exact = lao_constant_near_miss == SDV_NEAR_MISS_EXACT;
-    bool close = lao_constant_near_miss == SDV_NEAR_MISS_CLOSE;
-    float reach = sdv_near_miss_reach(lao_setting_silhouette, lao_setting_contour, lao_setting_shadow_width,
-                                      lao_frame.depth.z);
+    bool nearest = lao_constant_near_miss != SDV_NEAR_MISS_NONE;
     sdv_box around = b;
-    if (close) {
+    float reach = 0.0;
+    if (lao_constant_near_miss == SDV_NEAR_MISS_CLOSE) {
+        float zoom = sdv_zoom(lao_frame.scale, lao_frame.depth, lao_frame.depth.x + lao_frame.depth.z,
+                              float(lao_constant_supersampling)); /* at the far end, where a pixel is widest */
+        reach = sdv_near_miss_reach(sdv_outline_width(lao_setting_silhouette, lao_setting_outline_unit, zoom),
+                                    sdv_outline_width(lao_setting_contour, lao_setting_outline_unit, zoom),
+                                    lao_setting_shadow_width, lao_frame.depth.z);
         around = sdv_box_grown(b, reach);
     }
     sdv_march m = sdv_march_start(sdv_ray_box(origin, direction, around));
@@ -95,22 +98,23 @@ void main() {
         vec4 cell = texelFetch(cells, sdv_cell_at(b, p));
         bool occupied = cell.w > 0.0;
         sdv_near n = sdv_near_start(0.0);
-        if (occupied || exact || (close && sdv_is_close(cell.x, b.cell, reach))) {
+        if (occupied || (nearest && sdv_is_within(cell.z, reach))) {
             n = sdv_near_at(cells, ids, cones, b, cell, p, direction);
         }
-        if (exact) {
+        if (nearest) {
             m = note(origin, direction, m, n);
-        }
-        if ((exact || close) && sdv_march_passed(m, n)) {
-            m = minimum(b, origin, direction, m, m.cone, m.older, m.t);
+            if (sdv_march_passed(m, n)) {
+                m = minimum(b, origin, direction, m, m.cone, m.older, m.t);
+            }
         }
         m = sdv_march_step(m, n, occupied, cell.z, b.cell);
     }
-    if (exact && m.state != SDV_MARCH_HITS) {
-        m = least(b, origin, direction, m);
-    }
-    if (close && m.state != SDV_MARCH_HITS && m.falling > 0.5 && m.inside < 0.5) {
-        m = minimum(b, origin, direction, m, m.cone, m.older, SDV_FAR);
+    if (nearest && m.state != SDV_MARCH_HITS) {
+        if (!(reach > 0.0)) {
+            m = least(b, origin, direction, m);
+        }
+        m.d_min = SDV_FAR;
+        m = minimum(b, origin, direction, m, m.low_cone, 0.0, SDV_FAR);
     }
     out_position = vec4(0.0, 0.0, 0.0, -1.0);
     out_normal = vec4(0.0, 0.0, 0.0, m.d_min);

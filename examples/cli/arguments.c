@@ -1,5 +1,6 @@
 #include "arguments.h"
 
+#include "colour.h"
 #include "report.h"
 #include "scene.h"
 #include "video.h"
@@ -21,11 +22,13 @@ typedef enum flag_type {
     FLAG_AUTO,    /* double above 0, or "auto": 0 */
     FLAG_SPACING, /* double[3] above 0, or one for all */
     FLAG_SIZE,    /* uint32_t[2] */
-    FLAG_RANGE,   /* double[2] */
+    FLAG_RANGE,   /* colour_end[2] */
     FLAG_COLOR,   /* double[4] */
     FLAG_PAINT,   /* const char *, a colour or the name of something with colours */
     FLAG_ASSIGN,  /* name=value of a setting */
     FLAG_SETTING, /* the setting named in `choices` */
+    FLAG_LAYOUT,  /* const char *[2]: the name of an .svg, of a .json */
+    FLAG_SHAPE,   /* a further shape; `choices`: the operation */
 } flag_type;
 
 typedef struct flag_row {
@@ -39,14 +42,30 @@ typedef struct flag_row {
 
 #define BOTH (CLI_RENDER | CLI_COMPARE)
 #define ANY (CLI_INFO | BOTH | CLI_FLOW)
+#define SHOT (CLI_RENDER | CLI_VESSEL)
+#define DRAWN (BOTH | CLI_VESSEL)
 #define TRACE (BOTH | CLI_FLOW)
 #define ALL(field) false, offsetof(cli_options, field)
 #define FILE_(field) true, offsetof(cli_source, field)
 
 // clang-format off
 static const flag_row flags[] = {
-    {"--out", "-o", "FILE.png", FLAG_TEXT, BOTH, ALL(out), NULL, "the picture; with --frames a pattern (out_%04d.png, first = 0), or a video: .mp4, .webm, .gif"},
+    {"--out", "-o", "FILE.png", FLAG_TEXT, BOTH | CLI_SHEET, ALL(out), NULL, "the picture; with --frames a pattern (out_%04d.png, first = 0), or a video: .mp4, .webm, .gif"},
     {"--out", "-o", "FILE", FLAG_TEXT, CLI_FLOW, ALL(out), NULL, "the lines: .vtp (with time and speed), .trk (the same) or .tck (positions alone)"},
+    {"--out", "-o", "FILE.png", FLAG_TEXT, CLI_VESSEL, ALL(out), NULL, "the picture; of several cameras or frames a pattern (out_%04d.png, first = 0) or a video"},
+    {"--style", NULL, "NAME", FLAG_CHOICE, CLI_VESSEL, ALL(vessel.style), CLI_STYLES, "a set of settings: default, plain (light alone), ink (flat colours and outlines) or glow (soft, no outlines)"},
+    {"--grid", NULL, "N", FLAG_COUNT, CLI_VESSEL, ALL(vessel.grid), NULL, "cells of the distance field along its longest axis, 16..512 (128)"},
+    {"--layout", NULL, "FILE", FLAG_LAYOUT, CLI_VESSEL, ALL(vessel.layout), NULL, "the tree in 2D: a drawing (.svg) or numbers (.json); give it twice for both"},
+    {"--layout-weight", NULL, "NAME", FLAG_TEXT, CLI_VESSEL, ALL(vessel.weight), NULL, "lay out by this attribute of the nodes, or by radius, instead of by the number of nodes"},
+    {"--tree", NULL, "FILE.json", FLAG_TEXT, CLI_VESSEL, ALL(vessel.tree), NULL, "nodes and segments as they are drawn; segment.V of a dump counts these"},
+    {"--path", NULL, "X,Y,Z:X,Y,Z...", FLAG_TEXT, CLI_VESSEL, ALL(vessel.path), NULL, "distances of the vessels to a path through these points (mm): a needle"},
+    {"--target", NULL, "X,Y,Z,R|MESH", FLAG_TEXT, CLI_VESSEL, ALL(vessel.target), NULL, "the same to a ball, or to the surface in a file: a tumour"},
+    {"--subtract", NULL, "SHAPE", FLAG_SHAPE, CLI_VESSEL, ALL(vessel.shapes), "2", "cut away sphere:X,Y,Z,R, box:X,Y,Z,X,Y,Z (two corners), plane:NX,NY,NZ,D (where n.p < D) or the inside of a FILE (mesh or tree)"},
+    {"--intersect", NULL, "SHAPE", FLAG_SHAPE, CLI_VESSEL, ALL(vessel.shapes), "1", "keep what is inside; the shapes are applied in the order of the flags"},
+    {"--union", NULL, "SHAPE", FLAG_SHAPE, CLI_VESSEL, ALL(vessel.shapes), "0", "add the shape"},
+    {"--nodes", NULL, "N", FLAG_COUNT, CLI_VESSEL, ALL(vessel.nodes), NULL, "of the embedded tree, when no TREE is given (3000)"},
+    {"--cameras", NULL, "FILE.json", FLAG_TEXT, CLI_VESSEL, ALL(vessel.cameras), NULL, "an array of cameras: one picture for each"},
+    {"--frames", NULL, "N", FLAG_COUNT, CLI_VESSEL, ALL(frames), NULL, "pictures of one turn around the tree"},
     {"--seeds", NULL, "N", FLAG_COUNT, TRACE, ALL(flow.seeds), NULL, "lines, each from a random place inside and a random time (one per 4 mm^3, 1000 to 30000)"},
     {"--seed", NULL, "N", FLAG_COUNT, TRACE, ALL(flow.seed), NULL, "of the random numbers; the same gives the same lines"},
     {"--mask", NULL, "FILE|NAME", FLAG_TEXT, ANY, ALL(flow.mask), NULL, "where the vessel is: a volume of the same size, or an array of the FILE (>= 0.5 is inside)"},
@@ -67,29 +86,40 @@ static const flag_row flags[] = {
     {"--period", NULL, "MS", FLAG_ABOVE, CLI_INFO | CLI_FLOW, ALL(flow.period), NULL, "of all its frames, instead of --time-step"},
     {"--scene", NULL, "NAME", FLAG_SCENE, BOTH, ALL(scene), NULL, "embedded scene, when no FILE is given (aorta)"},
     {"--lines", NULL, "N", FLAG_COUNT, BOTH, ALL(lines), NULL, "lines of the embedded scene"},
-    {"--size", NULL, "WxH", FLAG_SIZE, BOTH, ALL(size), NULL, "pixels (render: 1280x960, compare: 640x480)"},
-    {"--ssaa", NULL, "N", FLAG_SETTING, BOTH, ALL(all), "supersampling", "samples per pixel and axis, 1..4 (2)"},
-    {"--background", NULL, "#rrggbb", FLAG_COLOR, BOTH, ALL(background), NULL, "or #rrggbbaa or r,g,b[,a] in 0..1 (#f4f4f2)"},
-    {"--backend", NULL, "gl|vk", FLAG_CHOICE, CLI_RENDER, ALL(backend), "gl|vk", "OpenGL or Vulkan (gl); the picture is the same"},
-    {"--camera", NULL, "FILE.json", FLAG_TEXT, BOTH, ALL(camera), NULL, "{\"eye\":[3],\"center\":[3],\"up\":[3],\"fovy\":degrees | \"ortho_height\":mm}"},
-    {"--save-camera", NULL, "FILE.json", FLAG_TEXT, CLI_RENDER, ALL(save_camera), NULL, "write the camera that was used"},
-    {"--view", NULL, "NAME", FLAG_CHOICE, BOTH, ALL(view), "axial|coronal|sagittal|iso", "direction of the automatic camera: axial, coronal, sagittal or iso"},
-    {"--ortho", NULL, NULL, FLAG_SWITCH, BOTH, ALL(ortho), NULL, "make the automatic camera orthographic"},
+    {"--size", NULL, "WxH", FLAG_SIZE, DRAWN, ALL(size), NULL, "pixels (render: 1280x960, compare: 640x480)"},
+    {"--ssaa", NULL, "N", FLAG_SETTING, DRAWN, ALL(all), "supersampling", "samples per pixel and axis, 1..4 (2)"},
+    {"--background", NULL, "#rrggbb", FLAG_COLOR, DRAWN, ALL(background), NULL, "or #rrggbbaa or r,g,b[,a] in 0..1 (#f4f4f2)"},
+    {"--backend", NULL, "gl|vk", FLAG_CHOICE, SHOT, ALL(backend), "gl|vk", "OpenGL or Vulkan (gl); the picture is the same"},
+    {"--camera", NULL, "FILE.json", FLAG_TEXT, DRAWN, ALL(camera), NULL, "{\"eye\":[3],\"center\":[3],\"up\":[3],\"fovy\":degrees | \"ortho_height\":mm}"},
+    {"--save-camera", NULL, "FILE.json", FLAG_TEXT, SHOT, ALL(save_camera), NULL, "write the camera that was used"},
+    {"--view", NULL, "NAME", FLAG_CHOICE, DRAWN, ALL(view), "axial|coronal|sagittal|iso", "direction of the automatic camera: axial, coronal, sagittal or iso"},
+    {"--ortho", NULL, NULL, FLAG_SWITCH, DRAWN, ALL(ortho), NULL, "make the automatic camera orthographic"},
     {"--time", NULL, "MS", FLAG_NUMBER, BOTH, ALL(time), NULL, "show this time: of lines with times the trails (trail taper, unless set)"},
     {"--frames", NULL, "N", FLAG_COUNT, CLI_RENDER, ALL(frames), NULL, "a sequence of pictures or a video over one period, or from the first time to the last"},
-    {"--fps", NULL, "N", FLAG_COUNT, CLI_RENDER, ALL(fps), NULL, "frames per second of a video (25)"},
-    {"--dump", NULL, "FILE.exr", FLAG_TEXT, CLI_RENDER, ALL(dump), NULL, "every image of the frame graph as 32-bit floats (OpenEXR)"},
-    {"--timings", NULL, "FILE.json", FLAG_TEXT, CLI_RENDER, ALL(timings), NULL, "milliseconds of the frame and of each pass"},
-    {"--json", NULL, NULL, FLAG_SWITCH, CLI_INFO | CLI_COMPARE | CLI_FLOW, ALL(json), NULL, "one JSON object on standard output"},
-    {"--help", "-h", NULL, FLAG_SWITCH, ANY, ALL(help), NULL, "this text"},
+    {"--fps", NULL, "N", FLAG_COUNT, SHOT, ALL(fps), NULL, "frames per second of a video (25)"},
+    {"--backdrop", NULL, NULL, FLAG_SWITCH, CLI_RENDER, ALL(backdrop), NULL, "of velocity volumes and the scene flow: the highest speeds of the beat behind the lines, the vessel's outline around"},
+    {"--legend", NULL, "SIDE", FLAG_CHOICE, CLI_RENDER, ALL(legend), "off|left|right|bottom", "scale of the attribute's colours in the picture: off, left, right or bottom (off)"},
+    {"--legend-title", NULL, "TEXT", FLAG_TEXT, CLI_RENDER, ALL(legend_title), NULL, "above the scale (the attribute's name, and its unit if known)"},
+    {"--dump", NULL, "FILE.exr", FLAG_TEXT, SHOT, ALL(dump), NULL, "every image of the frame graph as 32-bit floats (OpenEXR)"},
+    {"--timings", NULL, "FILE.json", FLAG_TEXT, SHOT, ALL(timings), NULL, "milliseconds of the frame and of each pass"},
+    {"--columns", NULL, "N", FLAG_COUNT, CLI_SHEET, ALL(columns), NULL, "pictures in a row (3)"},
+    {"--title", NULL, "TEXT", FLAG_TEXT, CLI_SHEET, ALL(title), NULL, "above all pictures"},
+    {"--note", NULL, "TEXT", FLAG_TEXT, CLI_SHEET, ALL(note), NULL, "below all pictures"},
+    {"--widest", NULL, "N", FLAG_COUNT, CLI_SHEET, ALL(widest), NULL, "pixels; wider pictures shrink by a whole factor (no limit)"},
+    {"--json", NULL, NULL, FLAG_SWITCH, CLI_INFO | CLI_COMPARE | CLI_FLOW | CLI_VESSEL, ALL(json), NULL, "one JSON object on standard output"},
+    {"--help", "-h", NULL, FLAG_SWITCH, ANY | CLI_SHEET | CLI_VESSEL, ALL(help), NULL, "this text"},
     {"--color", NULL, "#rrggbb", FLAG_PAINT, BOTH, FILE_(color), NULL, "or r,g,b in 0..1, direction, line or the NAME of an attribute"},
-    {"--colormap", NULL, "NAME", FLAG_CHOICE, BOTH, FILE_(colormap), "viridis|inferno|coolwarm|gray", "of attributes: viridis (default), inferno, coolwarm or gray"},
-    {"--range", NULL, "A,B", FLAG_RANGE, BOTH, FILE_(range), NULL, "values at both ends of the colour map (those of the data)"},
+    {"--colormap", NULL, "NAME", FLAG_CHOICE, BOTH, FILE_(colormap), COLOUR_MAPS, "of attributes: " COLOUR_MAPS " (viridis)"},
+    {"--range", NULL, "A,B", FLAG_RANGE, BOTH, FILE_(range), NULL, "values at both ends of the colour map, or percentiles of all (2%,98%)"},
+    {"--color", NULL, "NAME", FLAG_PAINT, CLI_VESSEL, FILE_(color), NULL, "layout (hue and saturation of the 2D layout), radius, order (of branching), distance, #rrggbb or the NAME of an attribute"},
+    {"--colormap", NULL, "NAME", FLAG_CHOICE, CLI_VESSEL, FILE_(colormap), COLOUR_MAPS, "of numbers: " COLOUR_MAPS " (viridis)"},
+    {"--range", NULL, "A,B", FLAG_RANGE, CLI_VESSEL, FILE_(range), NULL, "values at both ends of the colour map (those of the data)"},
     {"--every", NULL, "N", FLAG_COUNT, TRACE, FILE_(every), NULL, "keep each N-th line"},
     {"--min-length", NULL, "MM", FLAG_LENGTH, TRACE, FILE_(min_length), NULL, "drop shorter lines (files: none; of a volume: shorter than two voxels)"},
     {"--bundle", NULL, "NAME", FLAG_TEXT, BOTH, FILE_(bundle), NULL, "keep the lines of this group (TRX group, TT cluster)"},
     {"--unit", NULL, "NAME", FLAG_CHOICE, CLI_INFO, FILE_(unit), "mm|cm|um|m|m/s|cm/s|mm/s", "of trees and meshes: mm, cm, um or m, whatever the file tells or seems to be in; of volumes: m/s, cm/s or mm/s"},
-    {"--set", NULL, "NAME=VALUE", FLAG_ASSIGN, BOTH, FILE_(settings), NULL, "a setting, as its own flag does"},
+    {"--unit", NULL, "NAME", FLAG_CHOICE, CLI_VESSEL, FILE_(unit), "mm|cm|um|m", "of the tree, whatever the file tells or seems to be in"},
+    {"--set", NULL, "NAME=VALUE", FLAG_ASSIGN, DRAWN, FILE_(settings), NULL, "a setting, as its own flag does"},
 };
 // clang-format on
 enum { FLAG_ROWS = sizeof flags / sizeof *flags };
@@ -176,20 +206,87 @@ bool cli_parse_color(const char *text, double color[4]) {
     return true;
 }
 
-/* "align-intensity" and "align_intensity" are the same setting; -1: none. */
-static int find_setting(const char *name, size_t length) {
+/* "0,2.5", "2%,98%", "0,99%": two ends that are not the same. */
+static bool parse_range(const char *text, colour_end ends[2]) {
+    const char *comma = strchr(text, ',');
+    for (int i = 0; i < 2 && comma; i++) {
+        char part[64];
+        const char *from = i ? comma + 1 : text;
+        size_t length = i ? strlen(from) : (size_t)(comma - text);
+        bool percent = length > 0 && from[length - 1] == '%';
+        if (length >= sizeof part)
+            return false;
+        snprintf(part, sizeof part, "%.*s", (int)(length - percent), from);
+        if (!cli_number(part, &ends[i].value) ||
+            (percent && !(ends[i].value >= 0 && ends[i].value <= 100)))
+            return false;
+        ends[i].percent = percent;
+    }
+    return comma && (ends[0].percent != ends[1].percent || ends[0].value != ends[1].value);
+}
+
+/* The modules whose settings a command takes, and where a source keeps them. */
+static const lao_setting_row layout_rows[] = {
+#define ROW(name, type, minimum, maximum, standard, structural, unit, choices, help)               \
+    {#name, LAO_SETTING_##type, minimum, maximum, standard, structural, unit, choices, help},
+    CLI_LAYOUT_SETTINGS(ROW)
+#undef ROW
+};
+static const lao_module layout_module = {
+    .name = "layout",
+    .settings = layout_rows,
+    .setting_count = sizeof layout_rows / sizeof *layout_rows,
+};
+
+enum { MODULES = 3 };
+typedef struct module_row {
+    const lao_module *module; /* NULL: none of this command */
+    size_t offset;            /* of its settings in cli_source */
+} module_row;
+static module_row module_of(cli_command_bit command, int index) {
+    const module_row lines = {lao_lines_module(), offsetof(cli_source, settings)};
+    const module_row vessel = {sdv_module(), offsetof(cli_source, vessel)};
+    const module_row layout = {&layout_module, offsetof(cli_source, layout)};
+    const module_row none = {NULL, 0};
+    if (command & CLI_VESSEL)
+        return index == 0 ? vessel : index == 1 ? layout : lines;
+    return index == 0 && command & (CLI_RENDER | CLI_COMPARE) ? lines : none;
+}
+
+/* A setting of one of the modules; row NULL: there is none. */
+typedef struct setting_place {
+    const lao_setting_row *row;
+    module_row at;
+    int index;
+} setting_place;
+
+/* "align-intensity" and "align_intensity" are the same setting. */
+static setting_place find_setting(cli_command_bit command, const char *name, size_t length) {
+    setting_place place = {NULL, {NULL, 0}, -1};
     char text[64];
     if (length >= sizeof text)
-        return -1;
+        return place;
     for (size_t i = 0; i < length; i++)
         text[i] = name[i] == '-' ? '_' : name[i];
     text[length] = '\0';
-    return lao_setting_find(lao_lines_module(), text);
+    for (int m = 0; m < MODULES && !place.row; m++) {
+        place.at = module_of(command, m);
+        place.index = lao_setting_find(place.at.module, text);
+        if (place.index >= 0)
+            place.row = &place.at.module->settings[place.index];
+    }
+    return place;
 }
 
 static const char *setting_name(const void *user, uint32_t index) {
-    const lao_module *module = user;
-    return index < module->setting_count ? module->settings[index].name : NULL;
+    const parser *p = user;
+    for (int m = 0; m < MODULES; m++) {
+        const lao_module *module = module_of(p->command, m).module;
+        if (module && index < module->setting_count)
+            return module->settings[index].name;
+        index -= module ? module->setting_count : 0;
+    }
+    return NULL;
 }
 
 static const char *scene_name(const void *user, uint32_t index) {
@@ -227,18 +324,17 @@ static void setting_values(const lao_setting_row *row, char *text, size_t size) 
 }
 
 /* Gives one setting to the source; supersampling belongs to the picture, thus to every source. */
-static bool set_setting(parser *p, int setting, const char *value) {
-    const lao_module *module = lao_lines_module();
-    const lao_setting_row *row = &module->settings[setting];
-    if (lao_setting_parse(module, setting, value, &p->source->settings) != 0) {
+static bool set_setting(parser *p, setting_place place, const char *value) {
+    const lao_module *module = place.at.module;
+    if (lao_setting_parse(module, place.index, value, (char *)p->source + place.at.offset) != 0) {
         char values[256];
-        setting_values(row, values, sizeof values);
-        return cli_fail("%s: '%s' is not a value of it; write %s", row->name, value, values);
+        setting_values(place.row, values, sizeof values);
+        return cli_fail("%s: '%s' is not a value of it; write %s", place.row->name, value, values);
     }
-    if (strcmp(row->name, "supersampling") == 0) {
-        lao_setting_parse(module, setting, value, &p->options->all.settings);
+    if (strcmp(place.row->name, "supersampling") == 0) {
+        lao_setting_parse(module, place.index, value, &p->options->all.settings);
         for (uint32_t i = 0; i < p->options->file_count; i++)
-            lao_setting_parse(module, setting, value, &p->options->files[i].settings);
+            lao_setting_parse(module, place.index, value, &p->options->files[i].settings);
     }
     return true;
 }
@@ -247,14 +343,15 @@ static bool set_assignment(parser *p, const char *text) {
     size_t length = strcspn(text, "=");
     if (text[length] != '=')
         return cli_fail("--set: '%s' has no value; write --set name=value", text);
-    int setting = find_setting(text, length);
-    if (setting >= 0)
+    setting_place setting = find_setting(p->command, text, length);
+    if (setting.row)
         return set_setting(p, setting, text + length + 1);
     char name[64];
     snprintf(name, sizeof name, "%.*s", (int)(length < 63 ? length : 63), text);
-    const char *nearest = cli_nearest(name, setting_name, lao_lines_module());
-    return cli_fail("--set: there is no setting '%s'%s%s; 'lineao render --help' lists them", name,
-                    nearest ? "; did you mean " : "", nearest ? nearest : "");
+    const char *nearest = cli_nearest(name, setting_name, p);
+    return cli_fail("--set: there is no setting '%s'%s%s; 'lineao %s --help' lists them", name,
+                    nearest ? "; did you mean " : "", nearest ? nearest : "",
+                    p->command & CLI_VESSEL ? "vessel" : "render");
 }
 
 static bool set_scene(const char *value, const char **scene) {
@@ -274,6 +371,25 @@ static bool set_scene(const char *value, const char **scene) {
 }
 
 /* ---- flags ------------------------------------------------------------------------------ */
+
+/* The extension says which of the two. */
+static bool set_layout(const flag_row *row, const char *value, const char **names) {
+    const char *dot = strrchr(value, '.');
+    if (!dot || !is_choice("svg|json", dot + 1))
+        return cli_fail("%s: '%s' is not a value of it; its name must end in .svg or .json",
+                        row->name, value);
+    names[strcmp(dot, ".json") == 0] = value;
+    return true;
+}
+
+static bool add_shape(parser *p, const flag_row *row, const char *value) {
+    cli_vessel_options *o = &p->options->vessel;
+    if (o->shape_count == CLI_SHAPES)
+        return cli_fail("%s: more than %d shapes", row->name, CLI_SHAPES);
+    o->shapes[o->shape_count].operation = (uint32_t)(row->choices[0] - '0');
+    o->shapes[o->shape_count++].text = value;
+    return true;
+}
 
 static bool is_flow_flag(const flag_row *row) {
     size_t begin = offsetof(cli_options, flow);
@@ -323,7 +439,7 @@ static bool set_flag(parser *p, const flag_row *row, const char *value) {
         ok = parse_size(value, field);
         break;
     case FLAG_RANGE:
-        ok = cli_numbers(value, field, 2) && ((double *)field)[0] != ((double *)field)[1];
+        ok = parse_range(value, field);
         break;
     case FLAG_COLOR:
         ok = cli_parse_color(value, field);
@@ -335,7 +451,11 @@ static bool set_flag(parser *p, const flag_row *row, const char *value) {
     case FLAG_ASSIGN:
         return set_assignment(p, value);
     case FLAG_SETTING:
-        return set_setting(p, find_setting(row->choices, strlen(row->choices)), value);
+        return set_setting(p, find_setting(p->command, row->choices, strlen(row->choices)), value);
+    case FLAG_LAYOUT:
+        return set_layout(row, value, field);
+    case FLAG_SHAPE:
+        return add_shape(p, row, value);
     }
     return ok || cli_fail("%s: '%s' is not a value of it; write %s", row->name, value,
                           row->choices ? row->choices : row->value);
@@ -359,7 +479,7 @@ static const char *flag_name(const void *user, uint32_t index) {
         if ((flags[i].commands & p->command) && index-- == 0)
             return flags[i].name + 2;
     }
-    return p->command & (CLI_INFO | CLI_FLOW) ? NULL : setting_name(lao_lines_module(), index);
+    return setting_name(p, index);
 }
 
 static bool unknown_flag(const parser *p, const char *text, size_t length) {
@@ -375,10 +495,10 @@ static int take_flag(parser *p, int argc, char **argv, int at) {
     const char *text = argv[at], *equals = strchr(text, '=');
     size_t length = equals ? (size_t)(equals - text) : strlen(text);
     const flag_row *row = find_flag(p->command, text, length);
-    int setting = row || p->command & (CLI_INFO | CLI_FLOW) || strncmp(text, "--", 2) != 0
-                      ? -1
-                      : find_setting(text + 2, length - 2);
-    if (!row && setting < 0)
+    setting_place setting = {NULL, {NULL, 0}, -1};
+    if (!row && strncmp(text, "--", 2) == 0)
+        setting = find_setting(p->command, text + 2, length - 2);
+    if (!row && !setting.row)
         return unknown_flag(p, text, length);
     if (row && row->type == FLAG_SWITCH && !equals)
         return set_flag(p, row, NULL);
@@ -398,12 +518,40 @@ static bool is_line_name(const char *path) {
     return dot && is_choice("vtp|trk|tck", dot + 1);
 }
 
+static bool check_vessel(const cli_options *o) {
+    const cli_vessel_options *v = &o->vessel;
+    if (o->file_count > 1)
+        return cli_fail("%s: is a second TREE, and one is drawn at a time", o->files[1].path);
+    if (o->file_count == 1 && v->nodes)
+        return cli_fail("--nodes: is for the embedded tree, and a TREE is given");
+    if (!o->out && !o->dump && !o->timings && !o->save_camera && !v->layout[0] && !v->layout[1] &&
+        !v->tree && !o->json)
+        return cli_fail("vessel: no output is asked for; write -o out.png");
+    if (v->grid && (v->grid < 16 || v->grid > 512))
+        return cli_fail("--grid: '%u' is not a value of it; write 16..512", v->grid);
+    if (v->path && v->target)
+        return cli_fail("--path: is given beside --target; leave one of them out");
+    const cli_source *source = o->file_count ? &o->files[0] : &o->all;
+    if (source->color && strcmp(source->color, "distance") == 0 && !v->path && !v->target)
+        return cli_fail("--color: distance needs a --path or a --target");
+    if (v->cameras && (o->camera || o->frames || o->view || o->ortho))
+        return cli_fail("--cameras: says where every picture is taken from; leave %s out",
+                        o->camera   ? "--camera"
+                        : o->frames ? "--frames"
+                        : o->view   ? "--view"
+                                    : "--ortho");
+    return true;
+}
+
 static bool check(const parser *p) {
     const cli_options *o = p->options;
     if (o->help)
         return true;
     if (p->command == CLI_INFO && o->file_count == 0)
         return cli_fail("info: no FILE is given; write lineao info FILE...");
+    if (p->command == CLI_SHEET && (o->file_count == 0 || !o->out))
+        return cli_fail("sheet: %s; write lineao sheet CAPTION=FILE.png... -o out.png",
+                        o->out ? "no picture is given" : "no output is asked for");
     if (p->command == CLI_FLOW && (o->file_count == 0 || !o->out))
         return cli_fail("flow: %s; write lineao flow VOLUME... -o lines.vtp",
                         o->file_count ? "no output is asked for" : "no VOLUME is given");
@@ -412,9 +560,11 @@ static bool check(const parser *p) {
                         o->out);
     if (o->flow_flag && o->file_count == 0)
         return cli_fail("%s: is for velocity volumes, and no FILE is given", o->flow_flag);
+    if (p->command == CLI_VESSEL && !check_vessel(o))
+        return false;
     if (p->command == CLI_RENDER && !o->out && !o->dump && !o->timings && !o->save_camera)
         return cli_fail("render: no output is asked for; write -o out.png");
-    if (cli_is_video(o->out) && !o->frames)
+    if (cli_is_video(o->out) && !o->frames && !o->vessel.cameras)
         return cli_fail("%s: a video has frames; write --frames N", o->out);
     if (cli_is_video(o->out) && o->background[3] < 1)
         return cli_fail("--background: a video cannot be transparent; write pictures instead");
@@ -441,7 +591,10 @@ bool cli_parse(cli_command_bit command, int argc, char **argv, cli_options *out)
     out->time = NAN;
     out->size[0] = command == CLI_COMPARE ? 640 : 1280;
     out->size[1] = command == CLI_COMPARE ? 480 : 960;
+    out->legend = "off";
     out->all.colormap = "viridis";
+    out->all.range[0] = (colour_end){command == CLI_VESSEL ? 0 : 2, true};
+    out->all.range[1] = (colour_end){command == CLI_VESSEL ? 100 : 98, true};
     out->flow.threshold = -1;
     out->all.min_length = -1;
     cli_parse_color("#f4f4f2", out->background);
@@ -492,9 +645,7 @@ static void print_rows(cli_command_bit command, bool per_file, bool flow, const 
     }
 }
 
-static void print_settings(void) {
-    const lao_module *module = lao_lines_module();
-    printf("\nSettings, for all FILEs or for one (default in parentheses)\n");
+static void print_settings(const lao_module *module) {
     for (uint32_t i = 0; i < module->setting_count; i++) {
         const lao_setting_row *row = &module->settings[i];
         char values[256], left[64], standard[64];
@@ -512,6 +663,14 @@ void cli_print_flags(cli_command_bit command) {
     print_rows(command, false, true, "Velocity volumes");
     print_rows(command, true, false,
                "Of a FILE: before the first FILE for all FILEs, after a FILE for it alone");
-    if (command & CLI_COMPARE || command & CLI_RENDER)
-        print_settings();
+    if (command & (CLI_COMPARE | CLI_RENDER | CLI_VESSEL))
+        printf("\nSettings%s (default in parentheses)\n",
+               command & CLI_VESSEL ? "" : ", for all FILEs or for one");
+    for (int m = 0; m < MODULES; m++) { /* of those for lines few do anything to vessels */
+        const lao_module *module = module_of(command, m).module;
+        if (module && !(command & CLI_VESSEL && module == lao_lines_module()))
+            print_settings(module);
+    }
+    if (command & CLI_VESSEL)
+        printf("  Those of lineao render --help are taken too; supersampling is --ssaa.\n");
 }

@@ -3,7 +3,9 @@
 #ifndef LINEAO_CLI_ARGUMENTS_H
 #define LINEAO_CLI_ARGUMENTS_H
 
+#include "colour.h"
 #include "lineao.h"
+#include "sdfvessel.h"
 
 #include <stdbool.h>
 #include <stdint.h>
@@ -13,16 +15,42 @@ typedef enum cli_command_bit {
     CLI_INFO = 1,
     CLI_RENDER = 2,
     CLI_COMPARE = 4,
-    CLI_FLOW = 8
+    CLI_FLOW = 8,
+    CLI_SHEET = 16,
+    CLI_VESSEL = 32
 } cli_command_bit;
+
+/* Settings of a tree's 2D layout, as a module without passes; as lao_settings: zero is the default
+ * unless its bit is set. X as in SDV_SETTINGS. */
+#define CLI_LAYOUT_SETTINGS(X)                                                                     \
+    X(layout_ph, FLOAT, 0, 1000, 0, 0, "", "",                                                     \
+      "how much unbalanced sub-trees close up in the layout (4 / nodes of the reduced tree)")      \
+    X(layout_radial, BOOL, 0, 1, 0, 0, "", "", "draw the layout around its root")                  \
+    X(layout_all_nodes, BOOL, 0, 1, 0, 0, "", "",                                                  \
+      "a sub-tree weighs as many as it has nodes, not only branches and leaves")
+typedef struct cli_layout_settings {
+    uint64_t set;
+#define CLI__FIELD(name, type, minimum, maximum, standard, structural, unit, choices, help)        \
+    float name;
+    CLI_LAYOUT_SETTINGS(CLI__FIELD)
+#undef CLI__FIELD
+} cli_layout_settings;
+enum {
+#define CLI__BIT(name, type, minimum, maximum, standard, structural, unit, choices, help)          \
+    CLI_SETTING_##name,
+    CLI_LAYOUT_SETTINGS(CLI__BIT)
+#undef CLI__BIT
+};
 
 /* One FILE and the flags that hold for it. */
 typedef struct cli_source {
-    const char *path; /* NULL: the embedded scene */
+    const char *path; /* NULL: the embedded scene; of a sheet: "CAPTION=FILE.png" */
     lao_settings settings;
+    sdv_settings vessel;
+    cli_layout_settings layout;
     const char *color; /* NULL: automatic */
     const char *colormap;
-    double range[2]; /* of the attribute; equal: from the data */
+    colour_end range[2]; /* values at both ends of the colour map */
     uint32_t every;
     double min_length; /* mm; negative: none is given */
     const char *bundle;
@@ -40,17 +68,36 @@ typedef struct cli_flow_options {
     bool streamlines;
 } cli_flow_options;
 
+#define CLI_STYLES "default|plain|ink|glow"
+
+/* What `vessel` does with a tree. */
+enum { CLI_SHAPES = 16 };
+typedef struct cli_shape_option {
+    uint32_t operation; /* SDV_UNION, ... */
+    const char *text;
+} cli_shape_option;
+typedef struct cli_vessel_options {
+    const char *style, *tree, *path, *target, *cameras, *weight;
+    const char *layout[2]; /* NAME.svg, NAME.json */
+    uint32_t grid, nodes;  /* cells; nodes of the embedded tree; 0: not given */
+    cli_shape_option shapes[CLI_SHAPES];
+    uint32_t shape_count;
+} cli_vessel_options;
+
 typedef struct cli_options {
     cli_source all;    /* flags before the first FILE */
     cli_source *files; /* owned */
     uint32_t file_count;
     const char *scene, *out, *dump, *timings, *backend, *camera, *save_camera, *view;
-    uint32_t lines, frames, fps; /* 0: not given */
+    const char *legend, *legend_title;            /* "off" or a side; NULL: name and unit */
+    const char *title, *note;                     /* of a sheet */
+    uint32_t lines, frames, fps, columns, widest; /* 0: not given */
     uint32_t size[2];
     double time; /* ms; NaN: not given */
     double background[4];
-    bool ortho, json, help;
+    bool ortho, json, backdrop, help;
     cli_flow_options flow;
+    cli_vessel_options vessel;
     const char *flow_flag; /* the last flag in `flow` that was given, or NULL */
 } cli_options;
 

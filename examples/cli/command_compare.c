@@ -10,6 +10,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+enum { SHEET_COLUMNS = 3, WIDEST = 480 };
+
 typedef struct comparison {
     cli_session gl, vk;
     cli_sheet sheet;
@@ -40,63 +42,64 @@ static void find_range(const float *a, const float *b, const lao_read_info *info
 }
 
 /* Up to three channels as RGB (one: grey) over the range. */
-static uint8_t *to_picture(const float *data, const lao_read_info *info, const float range[2]) {
+static void to_picture(const float *data, const lao_read_info *info, const float range[2],
+                       uint8_t *out) {
     size_t count = (size_t)info->width * info->height;
-    uint8_t *out = cli_new(count, 3);
-    for (size_t i = 0; out && i < 3 * count; i++) {
-        uint32_t c = (uint32_t)(i % 3);
-        float v = info->channels == 1  ? data[i / 3]
-                  : c < info->channels ? data[i / 3 * info->channels + c]
+    for (size_t i = 0; i < 4 * count; i++) {
+        uint32_t c = (uint32_t)(i % 4);
+        float v = info->channels == 1  ? data[i / 4]
+                  : c < info->channels ? data[i / 4 * info->channels + c]
                                        : range[0];
         v = (v - range[0]) / (range[1] - range[0]);
-        out[i] = (uint8_t)(255 * (v > 0 ? fminf(v, 1) : 0) + 0.5f);
+        out[i] = c == 3 ? 255 : (uint8_t)(255 * (v > 0 ? fminf(v, 1) : 0) + 0.5f);
     }
-    return out;
 }
 
 /* Black where all bits agree, else the difference 16 times, never darker than a quarter. */
-static uint8_t *difference(const uint8_t *a, const uint8_t *b, const float *x, const float *y,
-                           const lao_read_info *raw, const lao_read_info *info,
-                           const float range[2]) {
+static void difference(const uint8_t *a, const uint8_t *b, const float *x, const float *y,
+                       const lao_read_info *raw, const lao_read_info *info, const float range[2],
+                       uint8_t *out) {
     size_t count = (size_t)info->width * info->height;
-    uint8_t *out = cli_new(count, 3);
-    for (size_t i = 0; out && i < count; i++) {
+    for (size_t i = 0; i < count; i++) {
         uint32_t row = (uint32_t)(i / info->width), flipped = info->height - 1 - row;
         size_t texel = ((size_t)flipped * info->width + i % info->width) * raw->channels;
         bool differs = memcmp(a + texel, b + texel, raw->channels) != 0;
         for (uint32_t c = 0; c < 3; c++) {
             size_t at = i * info->channels + (c < info->channels ? c : info->channels - 1);
             float d = 16 * fabsf(x[at] - y[at]) / (range[1] - range[0]);
-            out[3 * i + c] = (uint8_t)(!differs ? 0 : 255 * fminf(d > 0.25f ? d : 0.25f, 1));
+            out[4 * i + c] = (uint8_t)(!differs ? 0 : 255 * fminf(d > 0.25f ? d : 0.25f, 1));
         }
+        out[4 * i + 3] = 255;
     }
-    return out;
 }
 
 static bool draw_row(comparison *c, const char *label, const char *name, uint32_t level,
                      const uint8_t *a, const uint8_t *b, const lao_read_info *raw) {
     lao_read_info info;
     float range[2];
-    sheet_row row;
-    memset(&row, 0, sizeof row);
     float *x = cli_session_image(&c->gl, name, level, &info);
     float *y = x ? cli_session_image(&c->vk, name, level, &info) : NULL;
-    if (x && y) {
+    bool ok = x && y;
+    if (ok)
         find_range(x, y, &info, range);
-        row.width = info.width;
-        row.height = info.height;
-        row.pixels[0] = to_picture(x, &info, range);
-        row.pixels[1] = to_picture(y, &info, range);
-        row.pixels[2] = difference(a, b, x, y, raw, &info, range);
-        snprintf(row.label, sizeof row.label, "%s", label);
+    for (uint32_t i = 0; ok && i < SHEET_COLUMNS; i++) {
+        sheet_cell cell;
+        memset(&cell, 0, sizeof cell);
+        snprintf(cell.heading, sizeof cell.heading, "%s", label);
+        ok = picture_make(info.width, info.height, &cell.image) || cli_fail("out of memory");
+        if (ok && i < 2)
+            to_picture(i ? y : x, &info, range, cell.image.pixels);
+        else if (ok)
+            difference(a, b, x, y, raw, &info, range, cell.image.pixels);
+        if (ok && !sheet_shrink(&cell.image, WIDEST, i == 2)) {
+            picture_free(&cell.image);
+            ok = false;
+        }
+        ok = ok && sheet_add(&c->sheet, cell);
     }
     free(x);
     free(y);
-    if (row.pixels[0] && row.pixels[1] && row.pixels[2])
-        return sheet_add(&c->sheet, row);
-    for (int i = 0; i < SHEET_COLUMNS; i++)
-        free(row.pixels[i]);
-    return false;
+    return ok;
 }
 
 /* ---- counting --------------------------------------------------------------------------- */
@@ -142,7 +145,7 @@ static bool compare_level(comparison *c, const char *name, uint32_t level, bool 
     if (ok && a && (info.width != other.width || info.height != other.height))
         ok = cli_fail("compare: the backends differ in the size of the image %s %u", name, level);
     if (ok && a) {
-        char label[SHEET_LABEL];
+        char label[80];
         uint64_t texels,
             bits = count_bits(a, b, (size_t)info.width * info.height, info.channels, &texels);
         note(c, name, level, &info, bits, texels);
@@ -179,7 +182,9 @@ static bool compare_images(comparison *c) {
 
 static bool report(const cli_options *options, comparison *c) {
     static const char *const titles[SHEET_COLUMNS] = {"GL", "VK", "difference x 16"};
-    if (c->draw && !sheet_write(&c->sheet, titles, options->out))
+    c->sheet.columns = SHEET_COLUMNS;
+    c->sheet.titles = titles;
+    if (c->draw && !sheet_write(&c->sheet, options->out))
         return false;
     if (options->json) {
         cJSON *json = cJSON_CreateObject();

@@ -1,7 +1,9 @@
 /* lineao render: pictures, dumps, timings. */
 #include "commands.h"
+#include "context.h"
 #include "dump.h"
 #include "image.h"
+#include "legend.h"
 #include "report.h"
 #include "session.h"
 #include "video.h"
@@ -27,7 +29,7 @@ static const char *find_pattern(const char *path, size_t *length, int *digits, b
 }
 
 /* The file of one frame: the pattern filled in, or "_0007" before the extension. For free(). */
-static char *frame_path(const char *path, uint32_t frame) {
+char *cli_frame_path(const char *path, uint32_t frame) {
     size_t room = strlen(path) + 112, length = 0;
     int digits = 4;
     bool zeros = true;
@@ -48,36 +50,93 @@ static char *frame_path(const char *path, uint32_t frame) {
 
 /* ---- one frame -------------------------------------------------------------------------- */
 
-/* Into a file of its own, or into `video` unless that is NULL. */
-static bool write_picture(const char *path, cli_video *video, cli_session *session,
+static const char *unit_of(const char *attribute) {
+    static const char *const units[][2] = {{"time", "ms"}, {"speed", "m/s"}, {"velocity", "m/s"}};
+    for (size_t i = 0; i < sizeof units / sizeof *units; i++) {
+        if (strcmp(units[i][0], attribute) == 0)
+            return units[i][1];
+    }
+    return NULL;
+}
+
+/* One legend for every scale that the sets are coloured by. */
+static bool draw_legends(const cli_options *options, const cli_scene *scene, picture *p) {
+    enum { MOST = 4, TITLE = 128 };
+    static const char *const sides[] = {"left", "right", "bottom"};
+    colour_map *maps = cli_new(MOST, sizeof *maps);
+    char titles[MOST][TITLE];
+    legend legends[MOST];
+    uint32_t count = 0, side = 0;
+    while (side < 2 && strcmp(sides[side], options->legend) != 0) /* one of the flag's choices */
+        side++;
+    for (uint32_t s = 0; maps && s < scene->count && count < MOST; s++) {
+        const cli_set *set = &scene->sets[s];
+        bool known = !set->value;
+        for (uint32_t before = 0; before < s && !known; before++)
+            known = cli_same_scale(&scene->sets[before], set);
+        if (known)
+            continue;
+        const char *unit = unit_of(set->value);
+        snprintf(titles[count], TITLE, "%s%s%s%s", set->value, unit ? " (" : "", unit ? unit : "",
+                 unit ? ")" : "");
+        colour_map_make(set->source->colormap, &maps[count]);
+        legends[count].map = &maps[count];
+        memcpy(legends[count].range, set->range, sizeof set->range);
+        legends[count].title =
+            options->legend_title && count == 0 ? options->legend_title : titles[count];
+        count++;
+    }
+    bool ok =
+        maps && (legend_draw(p, (legend_side)side, legends, count) || cli_fail("out of memory"));
+    free(maps);
+    return ok;
+}
+
+/* What is drawn around the lines of a frame. */
+typedef struct surroundings {
+    const cli_options *options;
+    const cli_scene *scene;
+    cli_context context;
+    float paper[4];   /* the background that was asked for */
+    cli_video *video; /* NULL: a file for each picture */
+} surroundings;
+
+static bool surround(const surroundings *around, picture *p) {
+    return (!around->context.coverage || cli_context_compose(&around->context, around->paper, p)) &&
+           (strcmp(around->options->legend, "off") == 0 ||
+            draw_legends(around->options, around->scene, p));
+}
+
+static bool write_picture(const char *path, const surroundings *around, cli_session *session,
                           const cli_shot *shot) {
     char error[IMAGE_ERROR_SIZE];
-    uint8_t *pixels = cli_session_picture(session);
-    if (!pixels)
-        return false;
-    int channels = shot->background[3] < 1 ? 4 : 3;
-    for (size_t i = 0; channels == 3 && i < (size_t)shot->width * shot->height; i++)
-        memmove(pixels + 3 * i, pixels + 4 * i, 3);
-    bool ok = video ? cli_video_add(video, pixels)
-                    : image_write_png(path, shot->width, shot->height, pixels, channels, error) ||
-                          cli_fail("%s", error);
-    free(pixels);
+    picture p = {shot->width, shot->height, cli_session_picture(session)};
+    bool ok = p.pixels && surround(around, &p);
+    int channels = around->paper[3] < 1 ? 4 : 3;
+    for (size_t i = 0; ok && channels == 3 && i < (size_t)p.width * p.height; i++)
+        memmove(p.pixels + 3 * i, p.pixels + 4 * i, 3);
+    if (ok && around->video)
+        ok = cli_video_add(around->video, p.pixels);
+    else if (ok)
+        ok = image_write_png(path, p.width, p.height, p.pixels, channels, error) ||
+             cli_fail("%s", error);
+    picture_free(&p);
     return ok;
 }
 
 /* Writes what one frame gave; frame -1: no sequence. */
-static bool write_frame(const cli_options *options, const cli_scene *scene, cli_session *session,
-                        const cli_shot *shot, cli_video *video, int64_t frame) {
-    const char *paths[2] = {options->dump, options->out};
+static bool write_frame(const surroundings *around, cli_session *session, const cli_shot *shot,
+                        int64_t frame) {
+    const char *paths[2] = {around->options->dump, around->options->out};
     bool ok = true;
     for (int i = 0; i < 2 && ok; i++) {
         if (!paths[i])
             continue;
-        char *numbered = frame < 0 ? NULL : frame_path(paths[i], (uint32_t)frame);
+        char *numbered = frame < 0 ? NULL : cli_frame_path(paths[i], (uint32_t)frame);
         const char *path = numbered ? numbered : paths[i];
         ok = (frame < 0 || numbered) && cli_go_on() &&
-             (i == 0 ? cli_dump(path, session, scene, shot)
-                     : write_picture(path, video, session, shot));
+             (i == 0 ? cli_dump(path, session, around->scene, shot, NULL, NULL)
+                     : write_picture(path, around, session, shot));
         free(numbered);
     }
     return ok;
@@ -87,8 +146,9 @@ static bool write_frame(const cli_options *options, const cli_scene *scene, cli_
 
 /* Frame i of a sequence shows the first time plus i parts of the period. With timings a first frame
  * goes uncounted: it builds shaders and images. */
-static bool render_frames(const cli_options *options, const cli_scene *scene, cli_session *session,
-                          cli_shot *shot, cli_video *video) {
+static bool render_frames(const surroundings *around, cli_session *session, cli_shot *shot) {
+    const cli_options *options = around->options;
+    const cli_scene *scene = around->scene;
     uint32_t count = options->frames ? options->frames : 1;
     uint32_t flags = options->timings ? LAO_FRAME_TIMINGS : 0;
     double start = (double)shot->time;
@@ -99,21 +159,23 @@ static bool render_frames(const cli_options *options, const cli_scene *scene, cl
         if (count > 1)
             cli_progress_show(&progress, i, count);
         ok = cli_session_render(session, shot, flags) &&
-             write_frame(options, scene, session, shot, video, options->frames ? (int64_t)i : -1);
+             write_frame(around, session, shot, options->frames ? (int64_t)i : -1);
     }
     cli_progress_end(&progress);
     return ok;
 }
 
 /* A video appears when all of its frames are in it, else not at all. */
-static bool render_all(const cli_options *options, const cli_scene *scene, cli_session *session,
-                       cli_shot *shot) {
+static bool render_all(surroundings *around, cli_session *session, cli_shot *shot) {
+    const cli_options *options = around->options;
     cli_video video;
     if (!cli_is_video(options->out))
-        return render_frames(options, scene, session, shot, NULL);
-    return cli_video_open(&video, options->out, shot->width, shot->height,
-                          options->fps ? options->fps : 25) &&
-           cli_video_close(&video, render_frames(options, scene, session, shot, &video));
+        return render_frames(around, session, shot);
+    if (!cli_video_open(&video, options->out, shot->width, shot->height,
+                        options->fps ? options->fps : 25))
+        return false;
+    around->video = &video;
+    return cli_video_close(&video, render_frames(around, session, shot));
 }
 
 static bool write_json(const cli_options *options, cli_session *session, const cli_shot *shot) {
@@ -137,10 +199,23 @@ static bool render(const cli_options *options, const cli_scene *scene) {
         return false;
     if (!options->out && !options->dump && !options->timings) /* only the camera: no device */
         return write_json(options, NULL, &shot);
-    bool ok = cli_session_open(&session, options->backend, scene, &shot,
+    surroundings around;
+    around.options = options;
+    around.scene = scene;
+    around.video = NULL;
+    memcpy(around.paper, shot.background, sizeof around.paper);
+    if (options->backdrop && scene->volume_count == 0)
+        return cli_fail("--backdrop: shows what is behind the lines of a velocity volume or of "
+                        "--scene flow; there is neither");
+    if (options->backdrop) /* the lines alone; paper comes with what is behind them */
+        memset(shot.background, 0, sizeof shot.background);
+    memset(&session, 0, sizeof session);
+    bool ok = cli_context_make(scene, &shot, &around.context) &&
+              cli_session_open(&session, options->backend, scene, &shot,
                                options->dump ? LAO_VIEW_KEEP_IMAGES : 0) &&
-              render_all(options, scene, &session, &shot) && write_json(options, &session, &shot);
+              render_all(&around, &session, &shot) && write_json(options, &session, &shot);
     cli_session_close(&session);
+    cli_context_free(&around.context);
     return ok;
 }
 

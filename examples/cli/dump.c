@@ -42,10 +42,8 @@ static void add_floats(cJSON *object, const char *key, const float *values, int 
         cJSON_AddItemToArray(array, cli_json_float(values[i]));
 }
 
-static void add_settings(cJSON *object, const lao_settings *settings) {
-    const lao_module *module = lao_lines_module();
-    float values[LAO_SETTING_COUNT];
-    cJSON *list = cJSON_AddObjectToObject(object, "settings");
+static void add_settings(cJSON *list, const lao_module *module, const void *settings) {
+    float values[64]; /* as many as `set` has bits */
     lao_settings_resolve(module, settings, values);
     for (uint32_t i = 0; i < module->setting_count; i++) {
         const lao_setting_row *row = &module->settings[i];
@@ -58,6 +56,13 @@ static void add_settings(cJSON *object, const lao_settings *settings) {
         else
             cJSON_AddItemToObject(list, row->name, cli_json_float(values[i]));
     }
+}
+
+static void add_set_settings(cJSON *object, const cli_scene *scene, const cli_set *set) {
+    cJSON *list = cJSON_AddObjectToObject(object, "settings");
+    add_settings(list, lao_lines_module(), &set->settings);
+    if (scene->module)
+        add_settings(list, scene->module, set->module_settings[0]);
 }
 
 /* What the picture shows and how; its first set's settings stand outside too, for short. */
@@ -79,15 +84,17 @@ static cJSON *describe(const cli_session *session, const cli_scene *scene, const
     add_floats(json, "sphere", shot->sphere, 4);
     add_floats(json, "background", shot->background, 4);
     cJSON_AddItemToObject(json, "time", cli_json_float(shot->time));
-    add_settings(json, &scene->sets[0].settings);
+    add_set_settings(json, scene, &scene->sets[0]);
     cJSON *sets = cJSON_AddArrayToObject(json, "sets");
     for (uint32_t i = 0; i < scene->count; i++) {
         const cli_set *set = &scene->sets[i];
         cJSON *item = cJSON_CreateObject();
         cJSON_AddStringToObject(item, set->source->path ? "path" : "scene", set->name);
-        cJSON_AddNumberToObject(item, "lines", set->lines.line_count);
-        cJSON_AddNumberToObject(item, "points", set->lines.point_count);
-        add_settings(item, &set->settings);
+        cJSON_AddNumberToObject(item, set->object ? "segments" : "lines",
+                                set->object ? set->object->item_count : set->lines.line_count);
+        if (!set->object)
+            cJSON_AddNumberToObject(item, "points", set->lines.point_count);
+        add_set_settings(item, scene, set);
         cJSON_AddItemToArray(sets, item);
     }
     free(camera);
@@ -127,16 +134,16 @@ typedef struct plane {
     float *values;
 } plane;
 
-typedef struct exr_writer {
+struct cli_planes {
     image_part parts[PARTS];
     char part_names[PARTS][NAME];
     image_channel channels[PARTS][CHANNELS];
     plane planes[PARTS * 4 + CHANNELS];
     uint32_t part_count, plane_count, width, height; /* of the first part */
-} exr_writer;
+};
 
 /* The first part for images of full size, else the part of that name, which may be new; or NULL. */
-static image_part *find_part(exr_writer *w, const char *channel, const lao_read_info *info) {
+static image_part *find_part(cli_planes *w, const char *channel, const lao_read_info *info) {
     uint32_t i = 0;
     if (info->width != w->width || info->height != w->height) {
         size_t length = strcspn(channel, ".");
@@ -168,28 +175,35 @@ static void channel_name(const char *pattern, uint32_t level, char name[NAME]) {
         snprintf(name, NAME, "%s", pattern);
 }
 
-static bool add_channel(exr_writer *w, const char *name, const float *data, uint32_t channel,
-                        const lao_read_info *info) {
-    size_t count = (size_t)info->width * info->height;
+/* Room for a channel's values. NULL: reported. */
+static float *add_plane(cli_planes *w, const char *name, const lao_read_info *info) {
     image_part *part = find_part(w, name, info);
     if (!part || part->channel_count == CHANNELS ||
-        w->plane_count == sizeof w->planes / sizeof *w->planes)
-        return cli_fail("%s: too many channels for one file", name);
+        w->plane_count == sizeof w->planes / sizeof *w->planes) {
+        cli_fail("%s: too many channels for one file", name);
+        return NULL;
+    }
     plane *p = &w->planes[w->plane_count];
-    p->values = cli_new(count, sizeof *p->values);
+    p->values = cli_new((size_t)info->width * info->height, sizeof *p->values);
     if (!p->values)
-        return false;
+        return NULL;
     w->plane_count++;
     snprintf(p->name, NAME, "%s", name);
-    for (size_t i = 0; i < count; i++)
-        p->values[i] = data[i * info->channels + channel];
     image_channel *out = &w->channels[part - w->parts][part->channel_count++];
     out->name = p->name;
     out->data = p->values;
-    return true;
+    return p->values;
 }
 
-static bool add_image(exr_writer *w, cli_session *session, const lao_image_row *row) {
+static bool add_channel(cli_planes *w, const char *name, const float *data, uint32_t channel,
+                        const lao_read_info *info) {
+    float *values = add_plane(w, name, info);
+    for (size_t i = 0; values && i < (size_t)info->width * info->height; i++)
+        values[i] = data[i * info->channels + channel];
+    return values != NULL;
+}
+
+static bool add_image(cli_planes *w, cli_session *session, const lao_image_row *row) {
     bool ok = true;
     for (uint32_t level = 0; ok; level++) {
         lao_read_info info;
@@ -211,30 +225,51 @@ static bool add_image(exr_writer *w, cli_session *session, const lao_image_row *
     return false;
 }
 
-static bool add_images(exr_writer *w, cli_session *session, const cli_scene *scene,
-                       const cli_shot *shot) {
-    const lao_module *module = lao_lines_module();
-    uint32_t factor = (uint32_t)lao_settings_filled(&scene->sets[0].settings).supersampling;
-    w->width = shot->width * factor;
-    w->height = shot->height * factor;
-    snprintf(w->part_names[0], NAME, "full");
+static bool add_module(cli_planes *w, cli_session *session, const lao_module *module,
+                       bool picture_alone) {
     for (uint32_t i = 0; i < module->image_count; i++) {
-        if (module->images[i].channels[0] && !add_image(w, session, &module->images[i]))
+        const lao_image_row *row = &module->images[i];
+        if (row->channels[0] && (!picture_alone || strcmp(row->name, "out") == 0) &&
+            !add_image(w, session, row))
             return false;
     }
     return true;
 }
 
-bool cli_dump(const char *path, cli_session *session, const cli_scene *scene,
-              const cli_shot *shot) {
+static bool add_images(cli_planes *w, cli_session *session, const cli_scene *scene,
+                       const cli_shot *shot) {
+    uint32_t factor = (uint32_t)lao_settings_filled(&scene->sets[0].settings).supersampling;
+    w->width = shot->width * factor;
+    w->height = shot->height * factor;
+    snprintf(w->part_names[0], NAME, "full");
+    return (!scene->module || add_module(w, session, scene->module, false)) &&
+           add_module(w, session, lao_lines_module(), scene->module != NULL);
+}
+
+float *cli_planes_find(cli_planes *planes, const char *name, size_t *count) {
+    *count = (size_t)planes->width * planes->height;
+    for (uint32_t i = 0; i < planes->plane_count; i++) {
+        if (strcmp(planes->planes[i].name, name) == 0)
+            return planes->planes[i].values;
+    }
+    return NULL;
+}
+
+float *cli_planes_add(cli_planes *planes, const char *name) {
+    const lao_read_info info = {.width = planes->width, .height = planes->height};
+    return add_plane(planes, name, &info);
+}
+
+bool cli_dump(const char *path, cli_session *session, const cli_scene *scene, const cli_shot *shot,
+              cli_planes_edit edit, void *user) {
     char error[IMAGE_ERROR_SIZE];
-    exr_writer *w = calloc(1, sizeof *w);
+    cli_planes *w = calloc(1, sizeof *w);
     cJSON *json = describe(session, scene, shot);
     char *text = cJSON_PrintUnformatted(json);
     bool ok = w && text;
     if (!ok)
         cli_fail("out of memory");
-    ok = ok && add_images(w, session, scene, shot);
+    ok = ok && add_images(w, session, scene, shot) && (!edit || edit(user, w));
     if (ok && !image_write_exr(path, w->parts, w->part_count, text, error))
         ok = cli_fail("%s", error);
     for (uint32_t i = 0; w && i < w->plane_count; i++)

@@ -74,7 +74,7 @@ static void on_log(void *user, flow4d_log_item item, lao_result result, const ch
         cli_fail("%s: %s", (const char *)user, text);
 }
 
-static flow4d_field field_of(const io_volume *volume) {
+flow4d_field cli_field_of(const io_volume *volume) {
     flow4d_field field;
     memset(&field, 0, sizeof field);
     memcpy(field.size, volume->size, sizeof field.size);
@@ -95,7 +95,7 @@ static bool apply_threshold(const flow4d_host *host, const cli_flow_options *flo
     if (!(threshold > 0))
         return true;
     size_t voxels = (size_t)volume->size[0] * volume->size[1] * volume->size[2];
-    flow4d_field field = field_of(volume);
+    flow4d_field field = cli_field_of(volume);
     float *fastest = cli_new(voxels, sizeof *fastest);
     bool given = volume->mask != NULL;
     if (!given)
@@ -263,7 +263,7 @@ static bool trace(const cli_options *options, const cli_source *source, const fl
     if (!volume->mask_voxels)
         return cli_fail("%s: its mask is empty: there is no place for seeds; --mask names another",
                         name);
-    flow4d_field field = field_of(volume);
+    flow4d_field field = cli_field_of(volume);
     flow4d_trace_settings settings = settings_of(options, volume);
     if (flow4d_trace(host, &field, &settings, &traced) != LAO_OK)
         return false;

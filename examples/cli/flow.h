@@ -20,4 +20,7 @@ bool cli_read_volume(const cli_options *options, const cli_source *sources, uint
 bool cli_trace(const cli_options *options, const cli_source *source, const char *name,
                io_volume *volume, io_lines *out);
 
+/* The volume's arrays as a field of flow4d.h, borrowed. */
+struct flow4d_field cli_field_of(const io_volume *volume);
+
 #endif

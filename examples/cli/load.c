@@ -1,7 +1,9 @@
 #include "load.h"
 
 #include "camera.h"
+#include "context.h"
 #include "flow.h"
+#include "flow4d.h"
 #include "report.h"
 #include "scene.h"
 
@@ -93,7 +95,8 @@ static bool load_embedded(const cli_options *options, cli_set *set, cli_scene *o
     }
     memcpy(out->direction, scene.view_direction, sizeof out->direction);
     memcpy(out->up, scene.up, sizeof out->up);
-    bool ok = adopt(&scene, &set->lines);
+    bool ok = adopt(&scene, &set->lines) &&
+              (!options->backdrop || cli_context_keep_embedded(out, set->name));
     scene_free(&scene);
     return ok && cli_go_on();
 }
@@ -180,7 +183,7 @@ static bool follow_time(const cli_options *options, cli_scene *scene) {
 }
 
 static bool load_traced(const cli_options *options, const cli_source *first, uint32_t count,
-                        cli_set *set) {
+                        cli_set *set, cli_scene *out) {
     io_volume volume;
     lao_settings *s = &set->settings;
     if (!cli_read_volume(options, first, count, false, &volume))
@@ -188,6 +191,10 @@ static bool load_traced(const cli_options *options, const cli_source *first, uin
     bool ok = cli_trace(options, set->source, set->name, &volume, &set->lines);
     if (!(s->set & LAO_SET(period)) && !(s->period > 0)) { /* its trails repeat as the blood does */
         s->period = (float)volume.period;
+    }
+    if (ok && options->backdrop) {
+        flow4d_field field = cli_field_of(&volume);
+        ok = cli_context_keep(out, &field);
     }
     io_volume_free(&volume);
     return ok && cli_go_on();
@@ -203,7 +210,7 @@ static bool load_set(const cli_options *options, const cli_source *first, uint32
     set->name = first->path;
     set->settings = source->settings;
     out->count++; /* freed with the scene from here on */
-    bool ok = volumes        ? load_traced(options, first, volumes, set)
+    bool ok = volumes        ? load_traced(options, first, volumes, set, out)
               : source->path ? cli_read_file(source, &set->lines)
                              : load_embedded(options, set, out);
     if (!ok)
@@ -212,7 +219,7 @@ static bool load_set(const cli_options *options, const cli_source *first, uint32
         memcpy(out->origin, set->lines.origin, sizeof out->origin);
     move_origin(&set->lines, out->origin);
     find_times(set, out);
-    return cli_colour(set);
+    return true;
 }
 
 bool cli_scene_load(const cli_options *options, cli_scene *out) {
@@ -237,7 +244,7 @@ bool cli_scene_load(const cli_options *options, cli_scene *out) {
         ok = cli_fail("%s: is for velocity volumes, and no FILE is one", options->flow_flag);
     if (scene.beat[0] > scene.beat[1])
         scene.beat[0] = scene.beat[1] = 0;
-    if (!ok || !follow_time(options, &scene)) {
+    if (!ok || !follow_time(options, &scene) || !cli_colour(&scene)) {
         cli_scene_free(&scene);
         return false;
     }
@@ -252,6 +259,11 @@ void cli_scene_free(cli_scene *scene) {
         io_lines_free(&scene->sets[i].lines);
         free(scene->sets[i].colors);
     }
+    for (uint32_t i = 0; i < scene->volume_count; i++) {
+        free(scene->volumes[i].fastest);
+        free(scene->volumes[i].inside);
+    }
+    free(scene->volumes);
     free(scene->sets);
     memset(scene, 0, sizeof *scene);
 }

@@ -12,17 +12,33 @@ typedef struct cli_set {
     uint8_t *colors;    /* owned; RGBA per point; NULL: `color` */
     float color[4];     /* all zero: lineao's sand */
     const float *times; /* in `lines`, or NULL */
+    const char *value;  /* name of the attribute that `colors` show, or NULL */
+    double range[2];    /* its values at both ends of the source's colour map */
     lao_settings settings;
+    /* Of a vessel tree; its `lines` are points alone, which tell how far it reaches. */
+    const lao_object_desc *object;  /* NULL: a set of lines */
+    const void *module_settings[1]; /* of cli_scene.module */
 } cli_set;
+
+/* What --backdrop shows of a velocity volume: size[0] * size[1] * size[2] voxels, x fastest. */
+typedef struct cli_volume {
+    uint32_t size[3];
+    double to_mm[12]; /* rows of a 3x4 matrix: voxel index to mm, absolute */
+    float *fastest;   /* owned; greatest speed of the beat, m/s */
+    float *inside;    /* owned; at least 0.5: in the vessel; smooth, so that its outline is */
+} cli_volume;
 
 /* Everything that is drawn. Points are relative to `origin`, which is the first set's. */
 typedef struct cli_scene {
-    cli_set *sets; /* owned */
+    const lao_module *module; /* NULL: lines alone */
+    cli_set *sets;            /* owned */
     uint32_t count;
     double origin[3];
     float direction[3], up[3]; /* of the automatic camera */
-    double beat[2];            /* first and last time (ms); equal: none */
-    double period;             /* ms: of the first set that repeats, else from first to last time */
+    cli_volume *volumes;       /* owned; none unless --backdrop asks for them */
+    uint32_t volume_count;
+    double beat[2]; /* first and last time (ms); equal: none */
+    double period;  /* ms: of the first set that repeats, else from first to last time */
 } cli_scene;
 
 /* Loads what the options name. False: reported, nothing to free. */
@@ -37,7 +53,11 @@ bool cli_read_file(const cli_source *source, io_lines *out);
 /* The same for any kinds of content (IO_LINES, ...). */
 bool cli_read(const cli_source *source, unsigned wanted, io_contents *out);
 
-/* Colours a set as its source says. False: reported. */
-bool cli_colour(cli_set *set);
+/* Colours the sets as their sources say. Sets that are coloured by the same attribute, map and
+ * range share one range, so that a colour is one value in the whole picture. False: reported. */
+bool cli_colour(cli_scene *scene);
+
+/* Do both sets show the same values in the same colours? Then one legend tells of both. */
+bool cli_same_scale(const cli_set *a, const cli_set *b);
 
 #endif

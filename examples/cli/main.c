@@ -40,6 +40,21 @@ static const char flow_about[] =
     "on\n"
     "any number of threads (LINEAO_THREADS; as many as the machine has).\n";
 
+static const char vessel_about[] =
+    "A TREE is SWC, GXL (VascuSynth, OpenCCO), VTP or VTK centrelines with a radius, HDF5 or "
+    ".vmv;\n"
+    "without one the program grows a liver. Lengths are mm: see --unit for files that tell none.\n"
+    "A vessel is a chain of round cones through the nodes' spheres; rays find its surface in a\n"
+    "distance field (--grid). Thin branches are never missed; more cells are faster up to a point\n"
+    "and take more memory: 20 bytes a cell.\n\n"
+    "The layout draws the tree flat (Lichtenberg 2019): each branch has a place across (hue) and "
+    "a\n"
+    "depth (saturation), and the picture shows the same colours, so that a branch in one is found\n"
+    "in the other. With a --path or --target, colours are distances to it.\n\n"
+    "Without -o, --dump, --timings and --save-camera nothing is drawn and no GPU is opened.\n"
+    "A dump holds, in mm: position.X .Y .Z, normal.X .Y .Z, segment.V (counts --tree; -1 nothing,\n"
+    "-2 a shape), mask.V, dmin.V (the nearest miss of the pixel's ray; 1e30: none), distance.V.\n";
+
 static const command_row commands[] = {
     {"info", CLI_INFO, cli_info, "FILE... [--json]",
      "what is in files of lines, vessel trees, meshes and velocity volumes",
@@ -76,6 +91,22 @@ static const command_row commands[] = {
      "  lineao flow 4d.h5 --streamlines --at 120 -o peak.vtp\n"
      "  lineao render aorta.vtp --color speed -o aorta.png     look at them\n",
      flow_about},
+    {"sheet", CLI_SHEET, cli_sheet_command, "[CAPTION=]FILE.png... -o out.png",
+     "put pictures with captions on one sheet",
+     "  lineao sheet 'no AO=a.png' 'AO=b.png' --columns 2 -o ab.png\n", NULL},
+    {"vessel", CLI_VESSEL, cli_vessel, "[TREE] -o out.png",
+     "draw a vessel tree, lay it out in 2D, measure distances to it",
+     "  lineao vessel -o liver.png                              a liver made by code\n"
+     "  lineao vessel brain.swc -o out.png --layout out.svg     the tree, and its 2D layout\n"
+     "  lineao vessel lung.vtp --unit cm --color radius -o radius.png\n"
+     "  lineao vessel --target 20,10,0,12 --layout risk.json -o risk.png   distances to a tumour\n"
+     "  lineao vessel --path -90,0,0:20,10,0 -o needle.png      distances to a needle's path\n"
+     "  lineao vessel --subtract box:-200,0,0,0,200,200 -o cut.png          cut a corner away\n"
+     "  lineao vessel tree.gxl --style ink --ortho --view coronal -o ink.png\n"
+     "  lineao vessel --frames 120 -o turn.mp4                  one turn around it\n"
+     "  lineao vessel tree.swc --cameras path.json -o f_%04d.png --dump f_%04d.exr\n"
+     "  lineao vessel tree.swc --tree tree.json --layout layout.json       numbers alone\n",
+     vessel_about},
     {"bench", 0, NULL, "[--json]", "time every pass and frame of fixed scenes on both backends", "",
      NULL},
 };
@@ -94,8 +125,8 @@ static void list_commands(char *text, size_t size) {
 
 static void print_help(void) {
     printf("usage: lineao COMMAND ...\n\n"
-           "Renders dense 3D line sets (tractograms, pathlines, streamlines) so that their depth\n"
-           "and structure can be read at a glance.\n\n");
+           "Renders dense 3D line sets (tractograms, pathlines, streamlines) and vessel trees so\n"
+           "that their depth and structure can be read at a glance.\n\n");
     for (int i = 0; i < COMMANDS; i++)
         printf("  %-9s %s\n", commands[i].name, commands[i].help);
     printf("\nExamples\n");

@@ -111,8 +111,14 @@ static bool upload(cli_session *session, const cli_scene *scene) {
         desc.times = set->times;
         desc.colors = set->colors;
         memcpy(desc.color, set->color, sizeof desc.color);
+        memset(&session->sets[i], 0, sizeof session->sets[i]);
         session->sets[i].settings = &set->settings;
-        if (lao_lines_create(session->context, &desc, &session->sets[i].lines) != LAO_OK)
+        if (!set->object &&
+            lao_lines_create(session->context, &desc, &session->sets[i].lines) != LAO_OK)
+            return false;
+        session->sets[i].module_settings = set->module_settings;
+        if (set->object &&
+            lao_object_create(session->context, set->object, &session->sets[i].object) != LAO_OK)
             return false;
     }
     session->set_count = scene->count;
@@ -133,6 +139,8 @@ bool cli_session_open(cli_session *session, const char *backend, const cli_scene
     desc.backend = &functions;
     desc.logger.log = on_log;
     desc.logger.user = session;
+    desc.modules = &scene->module;
+    desc.module_count = scene->module ? 1 : 0;
     size.width = shot->width;
     size.height = shot->height;
     size.flags = view_flags;

@@ -15,6 +15,9 @@ typedef struct cli_shot {
 /* The camera of the options, or one that fits the scene. False: reported. */
 bool cli_shot_make(const cli_options *options, const cli_scene *scene, cli_shot *out);
 
+/* Matrices of shot->camera, when the caller has changed it. */
+void cli_shot_aim(const cli_scene *scene, cli_shot *shot);
+
 typedef struct cli_session {
     const char *backend; /* "gl" or "vk" */
     struct host_gl *gl;

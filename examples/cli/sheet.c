@@ -2,151 +2,184 @@
 
 #include "image.h"
 #include "report.h"
+#include "text.h"
 
+#include <math.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
-enum { WIDEST = 480, GAP = 12, LINE = 22, SCALE = 2 };
-
-/* ---- 5x7 letters ------------------------------------------------------------------------ */
-
-/* Five columns of seven bits, the lowest bit at the top, for ' ' to 'z' as far as labels need it.
- */
-static const uint8_t *glyph(char letter) {
-    static const char letters[] = " -.,:_x%0123456789abcdefghijklmnopqrstuvwyzGLVK";
-    static const uint8_t columns[][5] = {
-        {0x00, 0x00, 0x00, 0x00, 0x00}, {0x08, 0x08, 0x08, 0x08, 0x08},
-        {0x00, 0x60, 0x60, 0x00, 0x00}, {0x00, 0x50, 0x30, 0x00, 0x00},
-        {0x00, 0x36, 0x36, 0x00, 0x00}, {0x40, 0x40, 0x40, 0x40, 0x40},
-        {0x44, 0x28, 0x10, 0x28, 0x44}, {0x23, 0x13, 0x08, 0x64, 0x62},
-        {0x3E, 0x51, 0x49, 0x45, 0x3E}, {0x00, 0x42, 0x7F, 0x40, 0x00},
-        {0x42, 0x61, 0x51, 0x49, 0x46}, {0x21, 0x41, 0x45, 0x4B, 0x31},
-        {0x18, 0x14, 0x12, 0x7F, 0x10}, {0x27, 0x45, 0x45, 0x45, 0x39},
-        {0x3C, 0x4A, 0x49, 0x49, 0x30}, {0x01, 0x71, 0x09, 0x05, 0x03},
-        {0x36, 0x49, 0x49, 0x49, 0x36}, {0x06, 0x49, 0x49, 0x29, 0x1E},
-        {0x20, 0x54, 0x54, 0x54, 0x78}, {0x7F, 0x48, 0x44, 0x44, 0x38},
-        {0x38, 0x44, 0x44, 0x44, 0x20}, {0x38, 0x44, 0x44, 0x48, 0x7F},
-        {0x38, 0x54, 0x54, 0x54, 0x18}, {0x08, 0x7E, 0x09, 0x01, 0x02},
-        {0x0C, 0x52, 0x52, 0x52, 0x3E}, {0x7F, 0x08, 0x04, 0x04, 0x78},
-        {0x00, 0x44, 0x7D, 0x40, 0x00}, {0x20, 0x40, 0x44, 0x3D, 0x00},
-        {0x7F, 0x10, 0x28, 0x44, 0x00}, {0x00, 0x41, 0x7F, 0x40, 0x00},
-        {0x7C, 0x04, 0x18, 0x04, 0x78}, {0x7C, 0x08, 0x04, 0x04, 0x78},
-        {0x38, 0x44, 0x44, 0x44, 0x38}, {0x7C, 0x14, 0x14, 0x14, 0x08},
-        {0x08, 0x14, 0x14, 0x18, 0x7C}, {0x7C, 0x08, 0x04, 0x04, 0x08},
-        {0x48, 0x54, 0x54, 0x54, 0x20}, {0x04, 0x3F, 0x44, 0x40, 0x20},
-        {0x3C, 0x40, 0x40, 0x20, 0x7C}, {0x1C, 0x20, 0x40, 0x20, 0x1C},
-        {0x3C, 0x40, 0x30, 0x40, 0x3C}, {0x0C, 0x50, 0x50, 0x50, 0x3C},
-        {0x44, 0x64, 0x54, 0x4C, 0x44}, {0x3E, 0x41, 0x49, 0x49, 0x7A},
-        {0x7F, 0x40, 0x40, 0x40, 0x40}, {0x1F, 0x20, 0x40, 0x20, 0x1F},
-        {0x7F, 0x08, 0x14, 0x22, 0x41}};
-    const char *at = letter ? strchr(letters, letter) : NULL;
-    return columns[at ? at - letters : 0];
-}
-
-typedef struct canvas {
-    uint32_t width, height;
-    uint8_t *pixels;
-} canvas;
-
-static void draw_text(canvas *c, uint32_t x, uint32_t y, const char *text) {
-    for (; *text && x + 6 * SCALE <= c->width; text++, x += 6 * SCALE) {
-        const uint8_t *columns = glyph(*text);
-        for (uint32_t i = 0; i < 5 * SCALE; i++) {
-            for (uint32_t j = 0; j < 7 * SCALE; j++) {
-                if (columns[i / SCALE] >> (j / SCALE) & 1)
-                    memset(c->pixels + 3 * ((size_t)(y + j) * c->width + x + i), 40, 3);
-            }
-        }
-    }
-}
-
 /* ---- cells ------------------------------------------------------------------------------ */
 
-/* Shrinks by a whole factor: each pixel is the mean, or the strongest, of those below it. */
-static bool shrink(uint8_t **pixels, uint32_t width, uint32_t height, uint32_t factor,
-                   bool strongest) {
-    uint32_t w = (width + factor - 1) / factor, h = (height + factor - 1) / factor;
-    uint8_t *out = cli_new((size_t)w * h, 3);
-    for (size_t i = 0; out && i < (size_t)w * h * 3; i++) {
-        uint32_t c = (uint32_t)(i % 3), x = (uint32_t)(i / 3 % w) * factor,
-                 y = (uint32_t)(i / 3 / w) * factor, sum = 0, count = 0, most = 0;
-        for (uint32_t v = y; v < y + factor && v < height; v++) {
-            for (uint32_t u = x; u < x + factor && u < width; u++, count++) {
-                uint32_t value = (*pixels)[3 * ((size_t)v * width + u) + c];
+bool sheet_shrink(picture *image, uint32_t widest, bool strongest) {
+    uint32_t factor = (image->width + widest - 1) / widest;
+    picture out;
+    if (factor <= 1)
+        return true;
+    if (!picture_make((image->width + factor - 1) / factor, (image->height + factor - 1) / factor,
+                      &out))
+        return cli_fail("out of memory");
+    for (size_t i = 0; i < (size_t)out.width * out.height * 4; i++) {
+        uint32_t c = (uint32_t)(i % 4), x = (uint32_t)(i / 4 % out.width) * factor,
+                 y = (uint32_t)(i / 4 / out.width) * factor, sum = 0, count = 0, most = 0;
+        for (uint32_t v = y; v < y + factor && v < image->height; v++) {
+            for (uint32_t u = x; u < x + factor && u < image->width; u++, count++) {
+                uint32_t value = image->pixels[4 * ((size_t)v * image->width + u) + c];
                 sum += value;
                 most = value > most ? value : most;
             }
         }
-        uint32_t mean = count > 0 ? (sum + count / 2) / count : 0;
-        out[i] = (uint8_t)(strongest ? most : mean);
+        out.pixels[i] = (uint8_t)(strongest ? most : (sum + count / 2) / (count ? count : 1));
     }
-    free(*pixels);
-    *pixels = out;
-    return out != NULL;
-}
-
-bool sheet_add(cli_sheet *sheet, sheet_row row) {
-    uint32_t factor = row.width > WIDEST ? (row.width + WIDEST - 1) / WIDEST : 1;
-    sheet_row *rows = realloc(sheet->rows, (sheet->count + 1) * sizeof *rows);
-    bool ok = rows != NULL;
-    if (ok)
-        sheet->rows = rows;
-    else
-        cli_fail("out of memory");
-    for (int c = 0; c < SHEET_COLUMNS && ok && factor > 1; c++)
-        ok = shrink(&row.pixels[c], row.width, row.height, factor, c == SHEET_COLUMNS - 1);
-    for (int c = 0; c < SHEET_COLUMNS && !ok; c++)
-        free(row.pixels[c]);
-    if (!ok)
-        return false;
-    row.width = (row.width + factor - 1) / factor;
-    row.height = (row.height + factor - 1) / factor;
-    sheet->rows[sheet->count++] = row;
+    picture_free(image);
+    *image = out;
     return true;
 }
 
-static void draw_cell(canvas *c, uint32_t x, uint32_t y, const sheet_row *row,
-                      const uint8_t *pixels) {
-    for (uint32_t i = 0; i < row->height; i++) {
-        memcpy(c->pixels + 3 * ((size_t)(y + i) * c->width + x),
-               pixels + 3 * (size_t)i * row->width, 3 * (size_t)row->width);
+bool sheet_add(cli_sheet *sheet, sheet_cell cell) {
+    sheet_cell *cells = realloc(sheet->cells, (sheet->count + 1) * sizeof *cells);
+    if (!cells) {
+        picture_free(&cell.image);
+        free(cell.caption);
+        return cli_fail("out of memory");
     }
-}
-
-bool sheet_write(const cli_sheet *sheet, const char *const titles[SHEET_COLUMNS],
-                 const char *path) {
-    canvas c = {0, GAP + LINE, NULL};
-    uint32_t widest = 200, y = GAP;
-    for (uint32_t r = 0; r < sheet->count; r++) {
-        widest = sheet->rows[r].width > widest ? sheet->rows[r].width : widest;
-        c.height += LINE + sheet->rows[r].height + GAP;
-    }
-    c.width = GAP + SHEET_COLUMNS * (widest + GAP);
-    c.pixels = cli_new((size_t)c.width * c.height, 3);
-    if (!c.pixels)
-        return false;
-    memset(c.pixels, 250, 3 * (size_t)c.width * c.height);
-    for (uint32_t i = 0; i < SHEET_COLUMNS; i++)
-        draw_text(&c, GAP + i * (widest + GAP), y, titles[i]);
-    y += LINE;
-    for (uint32_t r = 0; r < sheet->count; r++) {
-        draw_text(&c, GAP, y, sheet->rows[r].label);
-        y += LINE;
-        for (uint32_t i = 0; i < SHEET_COLUMNS; i++)
-            draw_cell(&c, GAP + i * (widest + GAP), y, &sheet->rows[r], sheet->rows[r].pixels[i]);
-        y += sheet->rows[r].height + GAP;
-    }
-    char error[IMAGE_ERROR_SIZE];
-    bool ok = image_write_png(path, c.width, c.height, c.pixels, 3, error) || cli_fail("%s", error);
-    free(c.pixels);
-    return ok;
+    sheet->cells = cells;
+    sheet->cells[sheet->count++] = cell;
+    return true;
 }
 
 void sheet_free(cli_sheet *sheet) {
-    for (uint32_t r = 0; r < sheet->count; r++) {
-        for (int c = 0; c < SHEET_COLUMNS; c++)
-            free(sheet->rows[r].pixels[c]);
+    for (uint32_t i = 0; i < sheet->count; i++) {
+        picture_free(&sheet->cells[i].image);
+        free(sheet->cells[i].caption);
     }
-    free(sheet->rows);
+    free(sheet->cells);
     memset(sheet, 0, sizeof *sheet);
+}
+
+/* ---- text ------------------------------------------------------------------------------- */
+
+/* Lines of text from y on, at most `width` wide; returns their height. page NULL: only measured. */
+static uint32_t draw_lines(picture *page, uint32_t x, uint32_t y, uint32_t width, const char *text,
+                           const text_style *style) {
+    uint32_t line = (uint32_t)ceil(1.15 * style->size), height = 0;
+    while (text && *text) {
+        char part[512];
+        uint32_t bytes = text_fit(text, width, style);
+        snprintf(part, sizeof part, "%.*s", (int)bytes, text);
+        if (page)
+            text_draw(page, x, (int64_t)y + height, TEXT_LEFT, part, style);
+        height += line;
+        for (text += bytes; *text == ' ';)
+            text++;
+    }
+    return height;
+}
+
+/* ---- layout ----------------------------------------------------------------------------- */
+
+typedef struct layout {
+    uint32_t columns, rows, gap;
+    uint32_t *widths;        /* owned; of the columns */
+    text_style small, large; /* captions; the title */
+    uint32_t width, height;  /* of the page; height grows while it is drawn */
+} layout;
+
+static bool layout_make(const cli_sheet *sheet, layout *out) {
+    layout l;
+    uint32_t widest = 200;
+    memset(&l, 0, sizeof l);
+    l.columns = sheet->columns ? sheet->columns : 1;
+    l.columns = l.columns < sheet->count || sheet->count == 0 ? l.columns : sheet->count;
+    l.rows = (sheet->count + l.columns - 1) / l.columns;
+    l.widths = cli_new(l.columns, sizeof *l.widths);
+    if (!l.widths)
+        return false;
+    for (uint32_t c = 0; c < l.columns; c++)
+        l.widths[c] = 200;
+    for (uint32_t i = 0; i < sheet->count; i++) {
+        uint32_t width = sheet->cells[i].image.width, *column = &l.widths[i % l.columns];
+        *column = width > *column ? width : *column;
+        widest = width > widest ? width : widest;
+    }
+    l.small.size = fmin(fmax(widest / 24.0, 15), 30);
+    for (int k = 0; k < 3; k++)
+        l.small.ink[k] = 0.13;
+    l.large = l.small;
+    l.large.size *= 1.2;
+    l.large.bold = true;
+    l.gap = (uint32_t)(0.9 * l.small.size);
+    l.width = l.gap;
+    for (uint32_t c = 0; c < l.columns; c++)
+        l.width += l.widths[c] + l.gap;
+    *out = l;
+    return true;
+}
+
+/* A row from y on; returns the y below it. page NULL: only measured. */
+static uint32_t draw_row(const cli_sheet *sheet, const layout *l, uint32_t row, uint32_t y,
+                         picture *page) {
+    uint32_t first = row * l->columns, tallest = 0, captions = 0, x = l->gap;
+    y += draw_lines(page, x, y, l->width - 2 * l->gap, sheet->cells[first].heading, &l->small);
+    for (uint32_t i = first; i < sheet->count && i < first + l->columns; i++) {
+        uint32_t height = sheet->cells[i].image.height;
+        tallest = height > tallest ? height : tallest;
+    }
+    uint32_t below = y + tallest + l->gap / 4;
+    for (uint32_t c = 0; c < l->columns && first + c < sheet->count; c++) {
+        const sheet_cell *cell = &sheet->cells[first + c];
+        if (page && cell->image.pixels)
+            picture_over(page, x, y, &cell->image);
+        uint32_t height = draw_lines(page, x, below, l->widths[c], cell->caption, &l->small);
+        captions = height > captions ? height : captions;
+        x += l->widths[c] + l->gap;
+    }
+    return below + captions + l->gap;
+}
+
+/* Everything; returns the height. page NULL: only measured. */
+static uint32_t draw_sheet(const cli_sheet *sheet, const layout *l, picture *page) {
+    uint32_t y = l->gap, x = l->gap;
+    if (sheet->title)
+        y += draw_lines(page, x, y, l->width - 2 * l->gap, sheet->title, &l->large) + l->gap / 2;
+    if (sheet->titles) {
+        uint32_t tallest = 0;
+        for (uint32_t c = 0; c < l->columns; x += l->widths[c++] + l->gap) {
+            uint32_t height = draw_lines(page, x, y, l->widths[c], sheet->titles[c], &l->small);
+            tallest = height > tallest ? height : tallest;
+        }
+        y += tallest;
+    }
+    for (uint32_t row = 0; row < l->rows; row++)
+        y = draw_row(sheet, l, row, y, page);
+    if (sheet->note)
+        y += draw_lines(page, l->gap, y, l->width - 2 * l->gap, sheet->note, &l->small) + l->gap;
+    return y;
+}
+
+/* Rows of RGB, in place. */
+static void drop_alpha(picture *p) {
+    for (size_t i = 0; i < (size_t)p->width * p->height; i++)
+        memmove(p->pixels + 3 * i, p->pixels + 4 * i, 3);
+}
+
+bool sheet_write(const cli_sheet *sheet, const char *path) {
+    static const double white[3] = {1, 1, 1};
+    char error[IMAGE_ERROR_SIZE];
+    layout l;
+    picture page;
+    if (!layout_make(sheet, &l))
+        return false;
+    bool ok = picture_make(l.width, draw_sheet(sheet, &l, NULL), &page) ||
+              cli_fail("%s: out of memory", path);
+    if (ok) {
+        picture_fill(&page, 0, 0, page.width, page.height, white, 1);
+        draw_sheet(sheet, &l, &page);
+        drop_alpha(&page);
+        ok = image_write_png(path, page.width, page.height, page.pixels, 3, error) ||
+             cli_fail("%s", error);
+        picture_free(&page);
+    }
+    free(l.widths);
+    return ok;
 }

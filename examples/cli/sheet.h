@@ -1,31 +1,37 @@
-/* A sheet of pictures in rows of cells with labels, for comparing images by eye. */
+/* A sheet of pictures in rows of cells with text, for looking at them side by side. */
 #ifndef LINEAO_CLI_SHEET_H
 #define LINEAO_CLI_SHEET_H
+
+#include "picture.h"
 
 #include <stdbool.h>
 #include <stdint.h>
 
-enum { SHEET_COLUMNS = 3, SHEET_LABEL = 80 };
+typedef struct sheet_cell {
+    picture image;    /* owned; all zero: an empty place */
+    char heading[80]; /* above the row that this cell begins, or "" */
+    char *caption;    /* owned; below the picture, broken into lines; or NULL */
+} sheet_cell;
 
-/* One row: three pictures of the same size as RGB, top row first, and what stands above them. */
-typedef struct sheet_row {
-    uint32_t width, height;
-    uint8_t *pixels[SHEET_COLUMNS]; /* owned */
-    char label[SHEET_LABEL];
-} sheet_row;
-
+/* Titles and note are not owned and must outlive the sheet. All zero: an empty sheet of one column.
+ */
 typedef struct cli_sheet {
-    sheet_row *rows; /* owned */
+    uint32_t columns;
+    const char *const *titles; /* one for each column, or NULL */
+    const char *title, *note;  /* above and below all, or NULL; the note is broken into lines */
+    sheet_cell *cells;         /* owned; row by row */
     uint32_t count;
 } cli_sheet;
 
-/* Adds a row and takes over its pictures, also on failure. They shrink to at most 480 pixels in
- * width: as means, but the last column (the difference) keeps the strongest pixel. False: no
- * memory. */
-bool sheet_add(cli_sheet *sheet, sheet_row row);
+/* Adds a cell and takes over what it owns, also on failure. False: no memory, reported. */
+bool sheet_add(cli_sheet *sheet, sheet_cell cell);
 
-/* Draws the rows with a title for each column. False: reported. */
-bool sheet_write(const cli_sheet *sheet, const char *const titles[SHEET_COLUMNS], const char *path);
+/* Shrinks a picture by the least whole factor that makes it at most `widest` wide: each pixel is
+ * the mean, or the strongest, of those below it. False: no memory, reported. */
+bool sheet_shrink(picture *image, uint32_t widest, bool strongest);
+
+/* Draws the sheet on white. False: reported. */
+bool sheet_write(const cli_sheet *sheet, const char *path);
 void sheet_free(cli_sheet *sheet);
 
 #endif

@@ -45,6 +45,22 @@ static void fit_camera(const cli_options *options, const cli_scene *scene, doubl
     }
 }
 
+void cli_shot_aim(const cli_scene *scene, cli_shot *shot) {
+    /* From the absolute camera, so that a saved one gives the same matrices to the bit. */
+    camera_pose local = shot->camera;
+    double center[3];
+    for (int k = 0; k < 3; k++) {
+        local.eye[k] -= scene->origin[k];
+        local.center[k] -= scene->origin[k];
+        center[k] = shot->sphere[k];
+    }
+    float widest = 0; /* a ribbon reaches out of the ball of its points */
+    for (uint32_t s = 0; s < scene->count; s++)
+        widest = fmaxf(widest, lao_settings_filled(&scene->sets[s].settings).width);
+    camera_matrices(&local, (double)shot->width / shot->height, center,
+                    (double)shot->sphere[3] + widest, true, shot->view, shot->projection);
+}
+
 bool cli_shot_make(const cli_options *options, const cli_scene *scene, cli_shot *out) {
     char error[CAMERA_ERROR_SIZE];
     double aspect = (double)options->size[0] / options->size[1];
@@ -61,18 +77,6 @@ bool cli_shot_make(const cli_options *options, const cli_scene *scene, cli_shot 
         fit_camera(options, scene, aspect, &out->camera);
     else if (!camera_read(options->camera, &out->camera, error))
         return cli_fail("%s", error);
-    /* From the absolute camera, so that a saved one gives the same matrices to the bit. */
-    camera_pose local = out->camera;
-    double center[3];
-    for (int k = 0; k < 3; k++) {
-        local.eye[k] -= scene->origin[k];
-        local.center[k] -= scene->origin[k];
-        center[k] = out->sphere[k];
-    }
-    float widest = 0; /* a ribbon reaches out of the ball of its points */
-    for (uint32_t s = 0; s < scene->count; s++)
-        widest = fmaxf(widest, lao_settings_filled(&scene->sets[s].settings).width);
-    camera_matrices(&local, aspect, center, (double)out->sphere[3] + widest, true, out->view,
-                    out->projection);
+    cli_shot_aim(scene, out);
     return true;
 }

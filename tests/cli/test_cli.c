@@ -134,7 +134,7 @@ static void test_wrong_usage(void **state) {
     (void)state;
     expect_fault(RUN("%s", ""), 2, "command");
     expect_fault(RUN("rendr"), 2, "render");
-    expect_fault(RUN("vessel"), 2, "info, render, compare");
+    expect_fault(RUN("vesel"), 2, "info, render, compare");
     expect_fault(RUN("render"), 2, "-o");
     expect_fault(RUN("info"), 2, "FILE");
     expect_fault(RUN("info --strength 2 x"), 2, "--strength");
@@ -431,6 +431,7 @@ static void test_videos(void **state) {
     struct stat status;
     (void)state;
     mkdir("bin", 0755);
+    remove("bin/ffmpeg"); /* of a run that was stopped */
     assert_true(snprintf(path, sizeof path, "%s/bin", here) < (int)sizeof path);
     setenv("PATH", path, 1);
     expect_fault(RUN("render " PLAIN "--frames 2 -o film.mp4"), 1,

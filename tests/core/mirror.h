@@ -1,7 +1,7 @@
 /* The shared functions on random inputs, in the dialect of the shared text: C and GLSL compile
    these very lines. Row = group of functions, n = number of the input; the inputs come from the
    counter-based hash, so that nothing has to be uploaded. */
-#define MIRROR_ROWS 49u
+#define MIRROR_ROWS 50u
 #define MIRROR_INPUTS 1024u
 
 /* Number k of input n: mostly even in [low, high], now and then an end or 0. */
@@ -243,23 +243,27 @@ LAO_FN lao_v4 mirror(lao_uint row, lao_uint n) {
                               0.0f);
     }
     if (row == 39u) {
-        return lao_over(lao_v4_make(4.0f * u, 4.0f * v, d.x, d.y), 4.0f, d);
+        return mirror_from_v3(lao_shade_luminance(lao_v3_make(u, v, d.x), e, f, 0.1f, d.y, b),
+                              lao_srgb_encode(d.w));
     }
     if (row == 40u) {
+        return lao_over(lao_v4_make(4.0f * u, 4.0f * v, d.x, d.y), 4.0f, d);
+    }
+    if (row == 41u) {
         lao_v3 rim = lao_rim_corner(a, one > 0.5f, LAO_F(n & 1u), 9.0f * u);
         return mirror_from_v3(rim, lao_rim(lao_v3_make(1.1f * a, 1.1f * b, c.x)));
     }
-    if (row == 41u) {
+    if (row == 42u) {
         lao_v2 beside = lao_rim_neighbour(p, lao_v3_scale(e, 30.0f), (n & 15u) == 1u ? e : q,
                                           0.01f + u, one * 2.0f - 1.0f, LAO_F((n >> 2u) & 1u));
         return lao_v4_make(beside.x, beside.y, lao_rim_union(v, lao_v2_make(a, b)), 0.0f);
     }
-    if (row == 42u) {
+    if (row == 43u) {
         float begin = lao_halo_begin(0.5f * u, LAO_I(n % 3u));
         float light = lao_halo_light(v, begin, LAO_I(n & 1u));
         return lao_v4_make(begin, light, lao_light_pack(light), lao_light_unpack(d.x));
     }
-    if (row == 43u) { /* near and far plane, perspective and orthographic, reversed or not */
+    if (row == 44u) { /* near and far plane, perspective and orthographic, reversed or not */
         float near_z = 0.01f + d.x;
         float far_z = near_z + 1.0f + 999.0f * d.y;
         bool reversed = (n & 1u) != 0u;
@@ -276,7 +280,7 @@ LAO_FN lao_v4 mirror(lao_uint row, lao_uint n) {
                            lao_halo_depth(perspective, 1.1f * z),
                            lao_halo_displacement(u, v, LAO_I(n % 3u)));
     }
-    if (row == 44u) {
+    if (row == 45u) {
         float period = (n & 3u) == 1u ? 0.0f : 100.0f + 900.0f * u;
         float now = lao_trail_now(5000.0f * a, period);
         lao_trail_part part =
@@ -285,11 +289,11 @@ LAO_FN lao_v4 mirror(lao_uint row, lao_uint n) {
         return lao_v4_make(now, part.first, part.last,
                            lao_trail_distance(3000.0f * c.y, now, period));
     }
-    if (row == 45u) {
+    if (row == 46u) {
         lao_v3 grey = lao_desaturate(lao_v3_make(d.x, d.y, d.z));
         return mirror_from_v3(grey, lao_trail_shift(3000.0f * a, 900.0f * u, 500.0f * v + 1.0f));
     }
-    if (row == 46u) {
+    if (row == 47u) {
         return lao_v4_make(lao_trail_width(1.1f * u, 0.999f * v, d.x),
                            lao_trail_opacity(u, 0.5f * v),
                            lao_trail_highlight(200.0f * a, 1.0f + 3000.0f * v),

@@ -154,6 +154,9 @@ static void elementary_functions_keep_their_bounds(void **state) {
         assert_near(lao_clamp01(x), wanted, 0);
         assert_near(lao_srgb_decode((float)wanted),
                     wanted <= 0.04045 ? wanted / 12.92 : pow((wanted + 0.055) / 1.055, 2.4), 2e-6);
+        assert_near(lao_srgb_encode((float)wanted),
+                    wanted <= 0.0031308 ? 12.92 * wanted : 1.055 * pow(wanted, 1 / 2.4) - 0.055,
+                    2e-6);
     }
     assert_near(lao_hermite(0.25f), 0.15625, 0);
     assert_near(lao_hermite(0.5f), 0.5, 0);

@@ -184,7 +184,7 @@ static uint32_t steps_of(const char *name, const lao_plan_step **found) {
 
 static void rows_run_stage_by_stage(void **state) {
     static const char *const order[] = {"lines_halo", "measure",  "draw",      "level_zero",
-                                        "level_up",   "level_up", "occlusion", "shade",
+                                        "level_one",  "level_up", "occlusion", "shade",
                                         "tint",       "over",     "resolve"};
     fixture f;
     (void)state;
@@ -304,7 +304,7 @@ static void settings_of_the_module(void **state) {
 
 static void sets_that_occlude_each_other(void **state) {
     static const char *const order[] = {"lines_halo", "lines_halo", "measure",  "draw",
-                                        "level_zero", "level_up",   "level_up", "occlusion",
+                                        "level_zero", "level_one",  "level_up", "occlusion",
                                         "shade",      "tint",       "over",     "resolve"};
     fixture f;
     uint32_t lines = 0;

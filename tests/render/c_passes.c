@@ -344,6 +344,11 @@ static lao_v4 shade_pixel(const c_inputs *in, int x, int y) {
         return lao_v4_make(grey, grey, grey, 1);
     }
     l = lao_towards_eye(slope_of(in, x, y), in->frame.depth.w);
+    if ((int)s->ao_affects_color == LAO_COLOR_LUMINANCE_PRESERVING) {
+        c = lao_shade_luminance(lao_v3_make(base.x, base.y, base.z), lao_v3_make(t.x, t.y, t.z), l,
+                                s->ambient, s->diffuse, s->strength * occlusion);
+        return lao_v4_make(c.x, c.y, c.z, 1);
+    }
     c = lao_shade(lao_v3_make(base.x, base.y, base.z), lao_v3_make(t.x, t.y, t.z), l, s->ambient,
                   s->diffuse, s->specular * lao_light_unpack(base.w), (int)s->shininess,
                   s->strength * occlusion);

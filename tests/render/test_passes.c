@@ -172,6 +172,14 @@ static void test_smoothing(void **state) {
     shoot(&gl, "smoothing", text);
 }
 
+static void test_luminance_preserving(void **state) {
+    static const char *const text[] = {
+        "ao_affects_color", "luminance_preserving", "strength", "3", "samples", "9", NULL};
+    (void)state;
+    shoot(&gl, "luminance preserving", text);
+    shoot(&vk, "luminance preserving on Vulkan", text);
+}
+
 static void test_no_occlusion(void **state) {
     static const char *const text[] = {"occlusion",     "off", "shininess", "3",
                                        "supersampling", "3",   NULL};
@@ -296,13 +304,21 @@ static int teardown(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_default_gl),     cmocka_unit_test(test_default_vk),
-        cmocka_unit_test(test_classic),        cmocka_unit_test(test_paper),
-        cmocka_unit_test(test_author_light),   cmocka_unit_test(test_author_gaussian),
-        cmocka_unit_test(test_gaussian_paper), cmocka_unit_test(test_strict_zero),
-        cmocka_unit_test(test_smoothing),      cmocka_unit_test(test_no_occlusion),
-        cmocka_unit_test(test_show),           cmocka_unit_test(test_present),
-        cmocka_unit_test(test_host_depth),     cmocka_unit_test(test_soft_trails),
+        cmocka_unit_test(test_default_gl),
+        cmocka_unit_test(test_default_vk),
+        cmocka_unit_test(test_classic),
+        cmocka_unit_test(test_paper),
+        cmocka_unit_test(test_author_light),
+        cmocka_unit_test(test_author_gaussian),
+        cmocka_unit_test(test_gaussian_paper),
+        cmocka_unit_test(test_strict_zero),
+        cmocka_unit_test(test_smoothing),
+        cmocka_unit_test(test_no_occlusion),
+        cmocka_unit_test(test_luminance_preserving),
+        cmocka_unit_test(test_show),
+        cmocka_unit_test(test_present),
+        cmocka_unit_test(test_host_depth),
+        cmocka_unit_test(test_soft_trails),
     };
     return cmocka_run_group_tests(tests, setup, teardown);
 }

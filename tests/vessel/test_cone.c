@@ -60,10 +60,9 @@ static cone random_cone(uint32_t *seed) {
     cone c;
     double size = vessel_between(seed, 0.1, 30);
     int kind = (int)vessel_between(seed, 0, 8);
-    c.a = ball(vessel_between(seed, -size, size), vessel_between(seed, -size, size),
-               vessel_between(seed, -size, size), vessel_between(seed, 0, 0.6 * size));
-    c.b = ball(vessel_between(seed, -size, size), vessel_between(seed, -size, size),
-               vessel_between(seed, -size, size), vessel_between(seed, 0, 0.6 * size));
+    lao_v3 p = vessel_point(seed, size), q = vessel_point(seed, size);
+    c.a = lao_v4_make(p.x, p.y, p.z, (float)vessel_between(seed, 0, 0.6 * size));
+    c.b = lao_v4_make(q.x, q.y, q.z, (float)vessel_between(seed, 0, 0.6 * size));
     if (kind == 0)
         c.b.w = c.a.w;
     if (kind == 1)
@@ -96,10 +95,9 @@ static double brute(const cone *c, lao_v3 p) {
 }
 static lao_v3 random_point(const cone *c, uint32_t *seed) {
     double t = vessel_between(seed, -0.5, 1.5), reach = vessel_between(seed, 0, 3);
-    double size = reach * ((double)c->a.w + (double)c->b.w + 0.1);
-    return v3((double)c->a.x + t * (double)(c->b.x - c->a.x) + vessel_between(seed, -size, size),
-              (double)c->a.y + t * (double)(c->b.y - c->a.y) + vessel_between(seed, -size, size),
-              (double)c->a.z + t * (double)(c->b.z - c->a.z) + vessel_between(seed, -size, size));
+    lao_v3 p = vessel_point(seed, reach * ((double)c->a.w + (double)c->b.w + 0.1));
+    lao_v3 ab = lao_v3_make(c->b.x - c->a.x, c->b.y - c->a.y, c->b.z - c->a.z);
+    return lao_v3_add(p, lao_v3_along(lao_v3_make(c->a.x, c->a.y, c->a.z), ab, (float)t));
 }
 
 static void equals_brute_force(void **state) {

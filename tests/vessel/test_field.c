@@ -81,8 +81,7 @@ static void shapes_have_distances(void **state) {
     uint32_t seed = 1;
     const sdv_shape *all[] = {&ball, &box, &plane};
     for (int i = 0; i < 3000; i++) { /* gradients are slopes, off the creases */
-        lao_v3 p = v3(vessel_between(&seed, -6, 6), vessel_between(&seed, -6, 6),
-                      vessel_between(&seed, -6, 6));
+        lao_v3 p = vessel_point(&seed, 6);
         const sdv_shape *s = all[i % 3];
         lao_v3 g = sdv_shape_gradient(p, *s);
         lao_v3 q = lao_v3_along(p, g, 1e-3f);
@@ -123,8 +122,7 @@ static void boolean_operations(void **state) {
         sdv_shape s[2];
         uint32_t n = 1 + (uint32_t)i % 2, which;
         for (uint32_t k = 0; k < n; k++) {
-            lao_v3 at = v3(vessel_between(&seed, -20, 20), vessel_between(&seed, -20, 20),
-                           vessel_between(&seed, -20, 20));
+            lao_v3 at = vessel_point(&seed, 20);
             s[k] = shape((i / 2 + (int)k) % 3, (i / 6 + (int)k) % 3,
                          v4((double)at.x, (double)at.y, (double)at.z, 15), v4(12, 8, 17, 0));
             if (s[k].kind == SDV_SHAPE_PLANE) {
@@ -132,16 +130,14 @@ static void boolean_operations(void **state) {
                 s[k].a = v4((double)normal.x, (double)normal.y, (double)normal.z, 3);
             }
         }
-        lao_v3 from = lao_v3_scale(lao_sphere_point((float)vessel_between(&seed, 0, 1),
-                                                    (float)vessel_between(&seed, 0, 1)),
-                                   120);
-        lao_v3 to = v3(vessel_between(&seed, -25, 25), vessel_between(&seed, -25, 25),
-                       vessel_between(&seed, -25, 25));
+        lao_v3 from = lao_v3_scale(vessel_direction(&seed), 120);
+        lao_v3 to = vessel_point(&seed, 25);
         sdv_ray ray = {from, lao_v3_unit(lao_v3_sub(to, from), to), 0, 0};
         sdv_hit hit;
         if (sdv_shape_distance(from, s[0]) < 0 || (n > 1 && sdv_shape_distance(from, s[1]) < 0))
             continue; /* starts inside: see below */
-        sdv_trace_shapes(&g, s, n, &ray, &hit, &which);
+        const sdv_shapes shapes = {s, n, NULL, 0};
+        sdv_trace_shapes(&g, &shapes, &ray, &hit, &which);
         double truth = solid_truth(&g, s, n, from, ray.direction, 400);
         if ((truth < 0) != (hit.cone == SDV_NONE)) {
             wrong++;
@@ -179,15 +175,16 @@ static void carving_opens_vessels(void **state) {
     sdv_ray ray = {v3(0, 1, 30), v3(0, 0, -1), 0, 0}; /* the half z > 1 goes */
     sdv_hit hit;
     uint32_t which;
-    sdv_trace_shapes(&g, &cut, 1, &ray, &hit, &which);
+    const sdv_shapes shapes = {&cut, 1, NULL, 0};
+    sdv_trace_shapes(&g, &shapes, &ray, &hit, &which);
     assert_int_equal(hit.cone, SDV_CUT_CONE);
     assert_int_equal((int32_t)hit.cone, -2);
     assert_near(hit.position.z, 1, 1e-3);
     assert_near(hit.normal.z, 1, 1e-6);
-    sdv_trace_shapes(&g, NULL, 0, &ray, &hit, NULL); /* no shapes: the tree */
+    sdv_trace_shapes(&g, NULL, &ray, &hit, NULL); /* no shapes: the tree */
     assert_near(hit.position.z, sqrt(15), 1e-3);
     ray.origin = v3(0, 0, 0); /* from inside: the wall that is left */
-    sdv_trace_shapes(&g, &cut, 1, &ray, &hit, &which);
+    sdv_trace_shapes(&g, &shapes, &ray, &hit, &which);
     assert_int_equal(hit.inside, 1);
     assert_near(hit.position.z, -4, 1e-3);
     assert_near(hit.normal.z, 1, 1e-4);
@@ -213,26 +210,23 @@ static void light_and_openness(void **state) {
     }
     assert_true(before > 0.9);
     assert_true(sdv_shadow(&g, v3(0, 0, 13), up, 8, 0.1f) == 1.0f); /* on top: nothing above */
-    float open = sdv_openness(&g, v3(20, 0, 5), up, 4),
-          below = sdv_openness(&g, v3(0, 0, 5), up, 8);
+    float open = sdv_openness(&g, v3(20, 0, 5), up, 4, 0),
+          below = sdv_openness(&g, v3(0, 0, 5), up, 8, 0);
     assert_true(open > 0.99f && below < 0.9f && below > 0.1f);
-    assert_true(sdv_openness(&g, v3(0, 0, 0), up, 4) == 0.0f); /* inside */
-    assert_true(sdv_openness(&g, v3(0, 0, 5), up, 0) == 1.0f);
+    assert_true(sdv_openness(&g, v3(0, 0, 0), up, 4, 0) == 0.0f); /* inside */
+    assert_true(sdv_openness(&g, v3(0, 0, 5), up, 0, 0) == 1.0f);
     sdv_grid_free(&g);
     sdv_tree_free(&t);
 }
 
 /* ---- distances */
 static void random_cone(uint32_t *seed, lao_v4 c[2]) {
-    for (int i = 0; i < 2; i++)
-        c[i] = v4(vessel_between(seed, -10, 10), vessel_between(seed, -10, 10),
-                  vessel_between(seed, -10, 10), vessel_between(seed, 0, 4));
+    for (int i = 0; i < 2; i++) {
+        lao_v3 p = vessel_point(seed, 10);
+        c[i] = lao_v4_make(p.x, p.y, p.z, (float)vessel_between(seed, 0, 4));
+    }
     if (vessel_between(seed, 0, 1) < 0.2)
         c[1].w = c[0].w;
-}
-static lao_v3 random_point(uint32_t *seed, double size) {
-    return v3(vessel_between(seed, -size, size), vessel_between(seed, -size, size),
-              vessel_between(seed, -size, size));
 }
 static lao_v3 mix(lao_v3 a, lao_v3 b, double t) {
     return lao_v3_along(a, lao_v3_sub(b, a), (float)t);
@@ -270,8 +264,8 @@ static void pieces_are_exact(void **state) {
         lao_v4 c[2];
         double size = i % 3 ? 12 : 40, least = 1e9;
         random_cone(&seed, c);
-        lao_v3 u = random_point(&seed, size), v = random_point(&seed, size),
-               w = random_point(&seed, size);
+        lao_v3 u = vessel_point(&seed, size), v = vessel_point(&seed, size),
+               w = vessel_point(&seed, size);
         for (int k = 0; k <= 4000; k++)
             least = fmin(least, (double)sdv_round_cone(mix(u, v, k / 4000.0), c[0], c[1]));
         double d = (double)sdv_segment_cone(u, v, c[0], c[1]);
@@ -334,7 +328,7 @@ static void targets_equal_brute_force(void **state) {
         assert_near(sdv_target_cone(path, c[0], c[1]), (double)to_path - 0.5, 2e-6);
         assert_near(sdv_target_cone(ball, c[0], c[1]),
                     (double)sdv_round_cone(v3(1, 2, 3), c[0], c[1]) - 4, 2e-6);
-        lao_v3 q = random_point(&seed, 30);
+        lao_v3 q = vessel_point(&seed, 30);
         assert_near(sdv_target_point(ball, q), length(lao_v3_sub(q, v3(1, 2, 3))) - 4, 1e-5);
         double outside = fabs(length(lao_v3_sub(q, v3(5, 5, 0))) - 8);
         assert_near(sdv_target_point(mesh, q), outside, 0.06); /* facets */

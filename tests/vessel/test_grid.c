@@ -66,7 +66,7 @@ static void check_lists(const sdv_grid *g) {
         uint32_t n = 0;
         for (uint32_t k = 0; k < g->cone_count; k++) {
             if (sdv_round_cone(p, g->cones[2 * k], g->cones[2 * k + 1]) <= 2.0f * g->cell) {
-                assert_true(n < cell->w && g->ids[at + n] == (float)k);
+                assert_true((float)n < cell->w && g->ids[at + n] == (float)k);
                 n++;
             }
         }

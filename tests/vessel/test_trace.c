@@ -186,10 +186,8 @@ static truth brute(const sdv_grid *g, lao_v3 o, lao_v3 v, double end) {
 
 /* A ray from a sphere around the tree to a point near it. */
 static void aim(uint32_t *seed, double size, lao_v3 *o, lao_v3 *v) {
-    lao_v3 from =
-        lao_sphere_point((float)vessel_between(seed, 0, 1), (float)vessel_between(seed, 0, 1));
-    lao_v3 to = v3(vessel_between(seed, -size, size) / 2, vessel_between(seed, -size, size) / 2,
-                   vessel_between(seed, -size, size) / 2);
+    lao_v3 from = vessel_direction(seed);
+    lao_v3 to = vessel_point(seed, size / 2);
     *o = lao_v3_scale(from, (float)(2 * size));
     *v = lao_v3_unit(lao_v3_sub(to, *o), *v);
 }
@@ -202,7 +200,8 @@ static void random_rays(void **state) {
         double radius;
     } cases[] = {{60, 64, 4}, {120, 128, 1}, {120, 32, 0.2}, {30, 64, 15}};
     for (int i = 0; i < 4; i++) {
-        uint32_t seed = (uint32_t)i, wrong = 0, hits = 0, other = 0, steps = 0, loose = 0, far = 0;
+        uint32_t seed = (uint32_t)i, wrong = 0, hits = 0, other = 0, steps = 0, loose = 0, far = 0,
+                 near_rays = 0, coarse = 0;
         scene c =
             make_random((uint32_t)i + 1, cases[i].nodes, 100, cases[i].radius, cases[i].resolution);
         double cell = (double)c.grid.cell, worst = 0, miss = 0, most = 0, most_near = 0;
@@ -219,8 +218,18 @@ static void random_rays(void **state) {
                     t.least > 1e-3 * cell || t.t >= 0; /* closer than that counts as touching */
                 continue;
             }
+            ray.reach = c.grid.cell; /* within reach, d_min is the same without the rest */
+            sdv_hit close;
+            sdv_trace(&c.grid, &ray, &close);
+            assert_true((close.cone == SDV_NONE) == (hit.cone == SDV_NONE) && close.d_min >= 0);
+            assert_near(close.t, hit.t, 1e-3 * cell); /* its steps begin a reach earlier */
+            if (hit.d_min < ray.reach) {
+                near_rays++;
+                coarse += close.d_min > 1.002f * hit.d_min + 1e-4f;
+                assert_true(close.d_min < 1.2f * hit.d_min + 1e-3f);
+            }
             if (t.t < 0) { /* the least of the samples is at most their spacing off */
-                double over = (double)hit.d_min / t.least - 1;
+                double over = ((double)hit.d_min - 3e-5) / t.least - 1; /* rounding at 200 mm */
                 far += over > 1e-3;
                 most = fmax(most, over);
                 if (t.least < 2 * cell)
@@ -251,14 +260,15 @@ static void random_rays(void **state) {
         printf("%u segments, %u^3: %u of %d hit, %u disagree, |distance| < %.1e cells, %u ties, %u "
                "land "
                "elsewhere, d_min within %.1e mm, %.1f steps; %u d_min too great, at most %.2g, "
-               "near %.2g\n",
+               "near %.2g; with a reach %u of %u\n",
                cases[i].nodes - 1, cases[i].resolution, hits, RAYS, wrong, worst / cell, other,
-               loose, miss, (double)steps / RAYS, far, most, most_near);
+               loose, miss, (double)steps / RAYS, far, most, most_near, coarse, near_rays);
         assert_true(hits > 200);
         assert_true(wrong == 0);
         assert_true(loose <= RAYS / 10000);
         assert_true(worst < 1e-3 * cell);
         assert_true(miss < 1e-3);
+        assert_true(coarse <= near_rays / 50);
         assert_true(most_near < 2e-3 && most < 0.35 && far < RAYS / 50);
         done(&c);
     }
@@ -311,14 +321,11 @@ static void starts_inside(void **state) {
     uint32_t seed = 1, inside = 0;
     for (int i = 0; i < 3000; i++) {
         const lao_v4 *a = c.grid.cones + 2 * (i % (int)c.grid.cone_count);
-        lao_v3 o = v3((double)a->x + vessel_between(&seed, -3, 3),
-                      (double)a->y + vessel_between(&seed, -3, 3),
-                      (double)a->z + vessel_between(&seed, -3, 3));
+        lao_v3 o = lao_v3_add(lao_v3_make(a->x, a->y, a->z), vessel_point(&seed, 3));
         if (sdv_grid_distance(&c.grid, o, NULL) > -0.01f)
             continue;
         inside++;
-        lao_v3 v = lao_sphere_point((float)vessel_between(&seed, 0, 1),
-                                    (float)vessel_between(&seed, 0, 1));
+        lao_v3 v = vessel_direction(&seed);
         hit = shoot(&c, o, v);
         assert_int_equal(hit.inside, 1);
         assert_near(sdv_cones_distance(c.grid.cones, c.grid.cone_count, hit.position, NULL), 0,

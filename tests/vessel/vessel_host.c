@@ -71,6 +71,16 @@ double vessel_between(uint32_t *seed, double low, double high) {
     return low + (high - low) * (double)(lao_hash(*seed) >> 8) / 16777216.0;
 }
 
+lao_v3 vessel_point(uint32_t *seed, double size) {
+    float x = (float)vessel_between(seed, -size, size),
+          y = (float)vessel_between(seed, -size, size);
+    return lao_v3_make(x, y, (float)vessel_between(seed, -size, size));
+}
+lao_v3 vessel_direction(uint32_t *seed) {
+    float u = (float)vessel_between(seed, 0, 1);
+    return lao_sphere_point(u, (float)vessel_between(seed, 0, 1));
+}
+
 void vessel_random_tree(uint32_t seed, uint32_t n, double size, double radius, float *positions,
                         float *radii, sdv_segment *segments) {
     for (uint32_t i = 0; i < n; i++) {

@@ -23,6 +23,10 @@ sdv_host vessel_host_make(vessel_host *host);
 
 /* In [low, high), from a state that the call moves on. */
 double vessel_between(uint32_t *seed, double low, double high);
+/* Each coordinate in [-size, size). */
+lao_v3 vessel_point(uint32_t *seed, double size);
+/* A unit vector. */
+lao_v3 vessel_direction(uint32_t *seed);
 
 /* A random tree of n nodes in a box of `size` mm: parents[i] < i, radii up to `radius`. Static
    storage is not used: positions 3n, radii n, segments n - 1 are the caller's. */

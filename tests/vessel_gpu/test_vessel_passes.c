@@ -1,5 +1,6 @@
 /* Vessel trees on both backends: every texel of the traced images is what sdv_trace gives for the
-   pixel's ray, to the bit, and the shaded picture is the shared functions'. */
+   pixel's ray (sdv_trace_shapes where it is combined with shapes), to the bit, and the shaded
+   picture is the shared functions'. */
 #include "render_host.h"
 #include "sdfvessel.h"
 
@@ -119,6 +120,13 @@ static void ray_of(const lao_frame_uniforms *frame, uint32_t x, uint32_t y, sdv_
     ray->direction = lao_ray_direction(frame->world, slope, frame->depth.w);
 }
 
+/* What the default outlines and depth shadows need. */
+static float reach_of(const lao_frame_uniforms *frame) {
+    float zoom = sdv_zoom(frame->scale, frame->depth, frame->depth.x + frame->depth.z, 1);
+    return sdv_near_miss_reach(sdv_outline_width(1.25f, 0, zoom), sdv_outline_width(0.8f, 0, zoom),
+                               1.5f, frame->depth.z);
+}
+
 /* The traced images against C; returns how many pixels hit. */
 static uint32_t check_trace(const scene *s, const subject *tree, const render_result *result) {
     const render_image *position = render_find(result, "vessel_position", 0);
@@ -133,10 +141,9 @@ static uint32_t check_trace(const scene *s, const subject *tree, const render_re
             sdv_ray ray;
             sdv_hit hit;
             ray_of(&result->frame, x, y, &ray);
-            ray.flags = s->vessel.near_miss == SDV_NEAR_MISS_CLOSE   ? SDV_TRACE_CLOSE
-                        : s->vessel.near_miss == SDV_NEAR_MISS_EXACT ? SDV_TRACE_NEAREST
-                                                                     : 0;
-            ray.reach = sdv_near_miss_reach(0.5f, 0.25f, 2, result->frame.depth.z);
+            ray.flags = s->vessel.near_miss == SDV_NEAR_MISS_NONE ? 0 : SDV_TRACE_NEAREST;
+            ray.reach =
+                s->vessel.near_miss == SDV_NEAR_MISS_CLOSE ? reach_of(&result->frame) : 0.0f;
             sdv_trace(&tree->grid, &ray, &hit);
             q = lao_v4_make(hit.position.x, hit.position.y, hit.position.z,
                             hit.cone == SDV_NONE ? -1.0f : (float)hit.cone);
@@ -161,6 +168,81 @@ static uint32_t check_trace(const scene *s, const subject *tree, const render_re
     return hits;
 }
 
+/* ---------------------------------------------------------------------------------------------
+ * vessel_shade in C, from the traced images */
+
+/* Round half to even of v * 255: what the store of a normalised byte does. */
+static uint8_t unorm8(float v) {
+    float scaled = v * 255.0f, low = floorf(scaled), part = scaled - low;
+    uint32_t whole = (uint32_t)low;
+    return (uint8_t)(part > 0.5f || (part == 0.5f && (whole & 1)) ? whole + 1 : whole);
+}
+
+static lao_v3 color_of(const uint8_t *bytes) {
+    return lao_v3_make((float)bytes[0] / 255.0f, (float)bytes[1] / 255.0f,
+                       (float)bytes[2] / 255.0f);
+}
+
+/* What the pixel shows; false: nothing is drawn. */
+static bool shade_of(const subject *tree, const float *v, const lao_frame_uniforms *frame,
+                     const sdv_ray *ray, lao_v4 hit, lao_v4 n, lao_v4 r, lao_v3 *out) {
+    lao_v3 normal = lao_v3_make(n.x, n.y, n.z), p = lao_v3_make(hit.x, hit.y, hit.z);
+    lao_v3 miss = lao_transform(frame->view, lao_v3_along(ray->origin, ray->direction, r.y));
+    float zoom = sdv_zoom(frame->scale, frame->depth, -miss.z, 1);
+    float diameter = frame->depth.z, light = 1;
+    bool missed = hit.w == -1.0f, near = v[SDV_SETTING_ID_near_miss] != SDV_NEAR_MISS_NONE;
+    float width = v[missed ? SDV_SETTING_ID_silhouette : SDV_SETTING_ID_contour];
+    *out = lao_v3_make(0, 0, 0);
+    if (near && n.w < sdv_outline_width(width, v[SDV_SETTING_ID_outline_unit], zoom))
+        return true;
+    if (missed)
+        return false;
+    if (v[SDV_SETTING_ID_field_occlusion] > 0)
+        light = sdv_dimmed(light,
+                           1.0f - sdv_openness(&tree->grid, p, normal,
+                                               0.01f * v[SDV_SETTING_ID_occlusion_reach] * diameter,
+                                               r.w > 0.5f),
+                           v[SDV_SETTING_ID_occlusion_strength]);
+    if (near)
+        light = sdv_dimmed(light,
+                           sdv_depth_shadow(n.w, r.y, r.x, v[SDV_SETTING_ID_shadow_ratio],
+                                            0.01f * v[SDV_SETTING_ID_shadow_width] * diameter,
+                                            v[SDV_SETTING_ID_shadow_softness]),
+                           v[SDV_SETTING_ID_shadow_strength]);
+    const lao_v4 *cone = tree->grid.cones + 2 * (size_t)hit.w;
+    const uint8_t *colors = tree->colors + 8 * (size_t)hit.w;
+    lao_v3 color = sdv_cone_color(p, cone[0], cone[1], color_of(colors), color_of(colors + 4));
+    *out = sdv_shade(color, normal, lao_v3_scale(ray->direction, -1.0f),
+                     v[SDV_SETTING_ID_surface_ambient], v[SDV_SETTING_ID_surface_diffuse],
+                     v[SDV_SETTING_ID_surface_specular],
+                     (lao_int)v[SDV_SETTING_ID_surface_shininess], light);
+    return true;
+}
+
+static void check_shade(const scene *s, const subject *tree, const render_result *result) {
+    const render_image *position = render_find(result, "vessel_position", 0);
+    const render_image *normal = render_find(result, "vessel_normal", 0);
+    const render_image *ray_image = render_find(result, "vessel_ray", 0);
+    const render_image *shaded = render_find(result, "shaded", 0);
+    float values[SDV_SETTING_COUNT];
+    uint32_t wrong = 0, all = 0;
+    assert_true(shaded && shaded->format == LAO_FORMAT_RGBA8);
+    lao_settings_resolve(sdv_module(), &s->vessel, values);
+    for (uint32_t i = 0; i < WIDTH * HEIGHT; i++) {
+        uint32_t x = i % WIDTH, y = i / WIDTH;
+        sdv_ray ray;
+        lao_v3 c;
+        ray_of(&result->frame, x, y, &ray);
+        bool drawn = shade_of(tree, values, &result->frame, &ray, texel_of(position, x, y),
+                              texel_of(normal, x, y), texel_of(ray_image, x, y), &c);
+        const uint8_t bytes[4] = {unorm8(c.x), unorm8(c.y), unorm8(c.z), 255};
+        all += drawn;
+        wrong += drawn && memcmp(bytes, shaded->data + 4 * (size_t)i, 4) != 0;
+    }
+    assert_int_equal(wrong, 0);
+    assert_in_range(all, 300, WIDTH * HEIGHT);
+}
+
 static void same_image(const char *name, const render_result *a, const render_result *b) {
     const render_image *x = render_find(a, name, 0), *y = render_find(b, name, 0);
     assert_true(x && y);
@@ -174,6 +256,7 @@ static void check(scene *s, const subject *tree, uint32_t least_hits) {
         render_need(&devices[i]);
         render_draw(&devices[i], &s->shot, &results[i]);
         assert_in_range(check_trace(s, tree, &results[i]), least_hits, WIDTH * HEIGHT);
+        check_shade(s, tree, &results[i]);
     }
     same_image("zbuffer", &results[0], &results[1]);
     same_image("shaded", &results[0], &results[1]);
@@ -223,6 +306,95 @@ static void from_within(void **state) {
     s.shot.camera = render_camera(1, 0, 0, 0.2); /* node 0 has its centre here */
     render_perspective(&s.shot.camera, 60, (double)WIDTH / HEIGHT, 0.001, 100);
     check(&s, &tree, WIDTH * HEIGHT);
+    subject_free(&tree);
+}
+
+/* The tree combined with a shape of every kind, field included, by all operations. */
+enum { SAMPLES = 5, SHAPES = 4 };
+typedef struct carving {
+    sdv_shape list[SHAPES];
+    float samples[SAMPLES * SAMPLES * SAMPLES];
+    sdv_shapes shapes;
+} carving;
+
+static void carving_make(carving *c, uint32_t count) {
+    const sdv_shape list[SHAPES] = {
+        {{2, 1, 0, 6}, {0, 0, 0, 0}, SDV_SHAPE_BALL, SDV_SUBTRACTION},
+        {{0, 0, 0, 0}, {12, 9, 14, 0}, SDV_SHAPE_BOX, SDV_INTERSECTION},
+        {{-8, -8, -8, 4}, {SAMPLES, SAMPLES, SAMPLES, 0}, SDV_SHAPE_FIELD, SDV_UNION},
+        {{0.6f, 0, 0.8f, 3}, {0, 0, 0, 0}, SDV_SHAPE_PLANE, SDV_INTERSECTION},
+    };
+    memset(c, 0, sizeof *c);
+    memcpy(c->list, list, sizeof list);
+    for (uint32_t i = 0; i < SAMPLES * SAMPLES * SAMPLES; i++) { /* of a ball of 5 mm */
+        float x = 4.0f * (float)(i % SAMPLES) - 8, y = 4.0f * (float)(i / SAMPLES % SAMPLES) - 8,
+              z = 4.0f * (float)(i / (SAMPLES * SAMPLES)) - 8;
+        c->samples[i] = sqrtf(x * x + y * y + z * z) - 5;
+    }
+    c->shapes.shapes = c->list;
+    c->shapes.count = count;
+    c->shapes.fields = c->samples;
+    c->shapes.field_count = SAMPLES * SAMPLES * SAMPLES;
+}
+
+static uint32_t check_carved(const subject *tree, const carving *c, const render_result *result,
+                             uint32_t *cut) {
+    const render_image *position = render_find(result, "vessel_position", 0);
+    const render_image *normal = render_find(result, "vessel_normal", 0);
+    const render_image *ray_image = render_find(result, "vessel_ray", 0);
+    uint32_t hits = 0, wrong = 0;
+    assert_true(position && normal && ray_image);
+    for (uint32_t i = 0; i < WIDTH * HEIGHT; i++) {
+        uint32_t x = i % WIDTH, y = i / WIDTH, shape = 0;
+        lao_v4 p = texel_of(position, x, y), n = texel_of(normal, x, y),
+               r = texel_of(ray_image, x, y), q, m, t;
+        sdv_ray ray;
+        sdv_hit hit;
+        ray_of(&result->frame, x, y, &ray);
+        sdv_trace_shapes(&tree->grid, &c->shapes, &ray, &hit, &shape);
+        bool is_cut = hit.cone == SDV_CUT_CONE;
+        q = lao_v4_make(hit.position.x, hit.position.y, hit.position.z,
+                        hit.cone == SDV_NONE ? -1.0f
+                        : is_cut             ? -2.0f
+                                             : (float)hit.cone);
+        m = lao_v4_make(hit.normal.x, hit.normal.y, hit.normal.z, hit.d_min);
+        t = lao_v4_make(hit.t, is_cut ? (float)shape : 0.0f, (float)hit.steps,
+                        hit.inside ? 1.0f : 0.0f);
+        hits += hit.cone != SDV_NONE;
+        *cut += is_cut;
+        wrong += memcmp(&p, &q, sizeof p) != 0 || memcmp(&n, &m, sizeof n) != 0 ||
+                 memcmp(&r, &t, sizeof r) != 0;
+    }
+    assert_int_equal(wrong, 0);
+    return hits;
+}
+
+static void with_shapes(void **state) {
+    subject tree;
+    scene s;
+    carving c;
+    (void)state;
+    subject_make(&tree, 60, 1);
+    for (uint32_t count = 1; count <= SHAPES; count++) {
+        render_result results[2];
+        scene_make(&s, &tree);
+        carving_make(&c, count);
+        assert_int_equal(sdv_object_shapes(NULL, &c.shapes, NULL, &tree.object), LAO_OK);
+        for (int i = 0; i < 2; i++) {
+            uint32_t cut = 0;
+            render_need(&devices[i]);
+            render_draw(&devices[i], &s.shot, &results[i]);
+            assert_in_range(check_carved(&tree, &c, &results[i], &cut), 200, WIDTH * HEIGHT);
+            assert_in_range(cut, 10, WIDTH * HEIGHT);
+        }
+        same_image("zbuffer", &results[0], &results[1]);
+        same_image("out", &results[0], &results[1]);
+        render_free(&results[0]);
+        render_free(&results[1]);
+    }
+    c.list[2].b.w = 1; /* one sample too many */
+    assert_int_equal(sdv_object_shapes(NULL, &c.shapes, NULL, &tree.object),
+                     LAO_ERROR_INVALID_ARGUMENT);
     subject_free(&tree);
 }
 
@@ -278,9 +450,8 @@ static int close_all(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(perspective),
-        cmocka_unit_test(orthographic),
-        cmocka_unit_test(from_within),
+        cmocka_unit_test(perspective), cmocka_unit_test(orthographic),
+        cmocka_unit_test(from_within), cmocka_unit_test(with_shapes),
         cmocka_unit_test(among_lines),
     };
     return cmocka_run_group_tests(tests, open_all, close_all);

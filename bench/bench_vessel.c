@@ -1,0 +1,319 @@
+#include "bench_vessel.h"
+
+#include "bench_device.h"
+#include "bench_scene.h"
+#include "scene_tree.h"
+#include "sdfvessel.h"
+
+#include <math.h>
+#include <pthread.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <time.h>
+
+enum { ROUNDS = 3, TREES = 5, PASSES = 64 };
+
+static double now(void) {
+    struct timespec t;
+    clock_gettime(CLOCK_MONOTONIC, &t);
+    return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
+}
+
+/* ---- two threads -------------------------------------------------------------------------- */
+
+typedef struct shared_work {
+    void (*fn)(void *arg, uint32_t index);
+    void *arg;
+    uint32_t next, count;
+    pthread_mutex_t lock;
+} shared_work;
+
+static void *work_on(void *argument) {
+    shared_work *work = argument;
+    for (;;) {
+        pthread_mutex_lock(&work->lock);
+        uint32_t index = work->next < work->count ? work->next++ : UINT32_MAX;
+        pthread_mutex_unlock(&work->lock);
+        if (index == UINT32_MAX)
+            return NULL;
+        work->fn(work->arg, index);
+    }
+}
+
+static void run_on_two(void *user, uint32_t count, void (*fn)(void *, uint32_t), void *arg) {
+    shared_work work = {fn, arg, 0, count, PTHREAD_MUTEX_INITIALIZER};
+    pthread_t thread;
+    bool two = pthread_create(&thread, NULL, work_on, &work) == 0;
+    (void)user;
+    work_on(&work);
+    if (two)
+        pthread_join(thread, NULL);
+    pthread_mutex_destroy(&work.lock);
+}
+
+/* ---- trees -------------------------------------------------------------------------------- */
+
+/* nodes 1: one ball of the organ's size, whose rays are the floor. */
+static bool make_tree(uint32_t nodes, sdv_tree *out) {
+    static const float centre[3] = {0, 0, 0}, radius = 80;
+    sdv_tree_desc desc;
+    scene_tree scene;
+    memset(&desc, 0, sizeof desc);
+    memset(&scene, 0, sizeof scene);
+    if (nodes > 1 && !scene_tree_make(nodes, 0, &scene))
+        return bench_fail("no memory for a tree of %u nodes", nodes);
+    sdv_segment *segments = calloc(nodes, sizeof *segments);
+    for (uint32_t i = 0; segments && i < scene.segment_count; i++) {
+        segments[i].parent = scene.segments[2 * (size_t)i];
+        segments[i].child = scene.segments[2 * (size_t)i + 1];
+    }
+    desc.node_count = nodes;
+    desc.positions = nodes > 1 ? scene.positions : centre;
+    desc.radii = nodes > 1 ? scene.radii : &radius;
+    desc.segment_count = scene.segment_count;
+    desc.segments = segments;
+    lao_result result = segments ? sdv_tree_build(NULL, &desc, out) : LAO_ERROR_OUT_OF_MEMORY;
+    free(segments);
+    scene_tree_free(&scene);
+    return result == LAO_OK || bench_fail("sdv_tree_build: %s", lao_result_text(result));
+}
+
+/* ---- fields ------------------------------------------------------------------------------- */
+
+static bool make_grid(const sdv_tree *tree, uint32_t resolution, bool two, sdv_grid *out) {
+    sdv_host host;
+    sdv_grid_desc desc;
+    memset(&host, 0, sizeof host);
+    memset(&desc, 0, sizeof desc);
+    host.job.run = two ? run_on_two : NULL;
+    desc.resolution = resolution;
+    lao_result result = sdv_grid_build(&host, tree, &desc, out);
+    return result == LAO_OK || bench_fail("sdv_grid_build: %s", lao_result_text(result));
+}
+
+static bool measure_field(cJSON *list, const sdv_tree *tree, uint32_t resolution) {
+    double seconds[2] = {INFINITY, INFINITY};
+    cJSON *row = cJSON_CreateObject();
+    cJSON_AddItemToArray(list, row);
+    for (int round = 0; round < 2 * ROUNDS;
+         round++) { /* in turn: what disturbs one disturbs both */
+        sdv_grid grid;
+        double start = now();
+        if (!make_grid(tree, resolution, round % 2 != 0, &grid))
+            return false;
+        seconds[round % 2] = fmin(seconds[round % 2], now() - start);
+        if (round == 0) {
+            cJSON_AddNumberToObject(row, "segments", tree->segment_count);
+            cJSON_AddNumberToObject(row, "resolution", resolution);
+            cJSON_AddNumberToObject(row, "cells", grid.cell_count);
+            cJSON_AddNumberToObject(row, "listed", grid.id_count);
+            cJSON_AddNumberToObject(row, "cell_bytes", 20 + 4.0 * grid.id_count / grid.cell_count);
+            cJSON_AddNumberToObject(row, "segment_bytes", 40);
+        }
+        sdv_grid_free(&grid);
+    }
+    cJSON_AddNumberToObject(row, "ms_1", 1e3 * seconds[0]);
+    cJSON_AddNumberToObject(row, "ms_2", 1e3 * seconds[1]);
+    return true;
+}
+
+/* ---- rays --------------------------------------------------------------------------------- */
+
+typedef struct subject {
+    uint32_t segments;
+    sdv_tree tree;
+    sdv_grid grid;
+    sdv_object object;
+    lao_object handle;
+} subject;
+
+/* The same rays for all: a view of the embedded organ from a corner. */
+static void make_frame(lao_frame *frame, lao_set *set) {
+    const camera_pose pose = {{-190, 180, 140}, {0, 0, 0}, {0, 0, 1}, 36, 0};
+    const double centre[3] = {0, 0, 0};
+    memset(frame, 0, sizeof *frame);
+    camera_matrices(&pose, 1, centre, 130, true, frame->camera.view, frame->camera.projection);
+    frame->camera.flags = LAO_CAMERA_ZERO_TO_ONE;
+    frame->sphere[3] = 130;
+    frame->sets = set;
+    frame->set_count = 1;
+    frame->flags = LAO_FRAME_TIMINGS;
+}
+
+static bool read_steps(lao_context *context, lao_view view, double *steps, double *hits) {
+    lao_read_info info;
+    memset(&info, 0, sizeof info);
+    if (lao_read(context, view, "vessel_ray", 0, NULL, 0, &info) != LAO_OK)
+        return false;
+    size_t count = (size_t)info.width * info.height, room = count * info.channels;
+    float *data = malloc(room * sizeof *data);
+    bool ok = data && lao_read(context, view, "vessel_ray", 0, data, room, NULL) == LAO_OK;
+    *steps = *hits = 0;
+    for (size_t i = 0; ok && i < count; i++) {
+        *steps += (double)data[i * info.channels + 2] / (double)count;
+        *hits += (data[i * info.channels] > 0 ? 1.0 : 0.0) / (double)count;
+    }
+    free(data);
+    return ok;
+}
+
+static double pass_time(const lao_timing *rows, uint32_t count, const char *name) {
+    for (uint32_t i = 0; i < count && i < PASSES; i++) {
+        if (strcmp(rows[i].pass, name) == 0)
+            return rows[i].milliseconds;
+    }
+    return 0;
+}
+
+/* One kind of rays at one size, on all subjects. */
+typedef struct ray_case {
+    bench_device *device;
+    lao_context *context;
+    lao_view view;
+    uint32_t size;
+    sdv_settings settings;
+    double trace[1 + TREES], shade[1 + TREES], steps[1 + TREES], hits[1 + TREES];
+} ray_case;
+
+static bool draw_subject(ray_case *c, const subject *s, uint32_t index) {
+    const void *settings[1] = {&c->settings};
+    lao_settings lines;
+    lao_timing rows[PASSES];
+    uint32_t count = PASSES;
+    lao_frame frame;
+    lao_set set;
+    double ms;
+    memset(&set, 0, sizeof set);
+    memset(&lines, 0, sizeof lines);
+    lines.supersampling = 1;
+    set.object = s->handle;
+    set.settings = &lines;
+    set.module_settings = settings;
+    make_frame(&frame, &set);
+    frame.view = c->view;
+    if (!bench_device_frame(c->device, c->context, &frame, &ms) ||
+        lao_timings(c->context, c->view, rows, &count) != LAO_OK ||
+        !read_steps(c->context, c->view, &c->steps[index], &c->hits[index]))
+        return false;
+    c->trace[index] = fmin(c->trace[index], pass_time(rows, count, "vessel_trace"));
+    c->shade[index] = fmin(c->shade[index], pass_time(rows, count, "vessel_shade"));
+    return true;
+}
+
+static void add_case(cJSON *list, const ray_case *c, const subject *subjects, uint32_t count) {
+    for (uint32_t i = 1; i < count; i++) {
+        cJSON *row = cJSON_CreateObject();
+        cJSON_AddStringToObject(row, "backend", c->device->backend);
+        cJSON_AddNumberToObject(row, "segments", subjects[i].segments);
+        cJSON_AddNumberToObject(row, "size", c->size);
+        cJSON_AddStringToObject(row, "near_miss", c->settings.near_miss > 0 ? "none" : "close");
+        cJSON_AddNumberToObject(row, "hits", c->hits[i]);
+        cJSON_AddNumberToObject(row, "steps", c->steps[i]);
+        cJSON_AddNumberToObject(row, "trace_ms", c->trace[i]);
+        cJSON_AddNumberToObject(row, "shade_ms", c->shade[i]);
+        cJSON_AddNumberToObject(row, "trace_over_ball", c->trace[i] / c->trace[0]);
+        cJSON_AddItemToArray(list, row);
+    }
+}
+
+/* All subjects in turn, round by round; the least of all rounds but the first counts, which
+ * compiles. */
+static bool measure_rays(bench_device *device, lao_context *context, const subject *subjects,
+                         uint32_t count, uint32_t size, float near_miss, cJSON *list) {
+    ray_case c;
+    lao_view_desc desc;
+    memset(&c, 0, sizeof c);
+    memset(&desc, 0, sizeof desc);
+    c.device = device;
+    c.context = context;
+    c.size = desc.width = desc.height = size;
+    c.settings.near_miss = near_miss;
+    desc.flags = LAO_VIEW_KEEP_IMAGES;
+    bool ok = lao_view_create(context, &desc, &c.view) == LAO_OK;
+    for (int round = 0; ok && round <= ROUNDS; round++) {
+        for (uint32_t i = 0; ok && i < count; i++) {
+            if (round < 2)
+                c.trace[i] = c.shade[i] = INFINITY;
+            ok = draw_subject(&c, &subjects[i], i);
+        }
+    }
+    if (ok)
+        add_case(list, &c, subjects, count);
+    lao_view_destroy(context, c.view);
+    return ok;
+}
+
+static bool measure_backend(const char *backend, subject *subjects, uint32_t count, bool quick,
+                            cJSON *list) {
+    bench_device device;
+    lao_context *context = NULL;
+    bool ok = bench_device_open(&device, backend) &&
+              bench_device_context(&device, sdv_module(), &context);
+    for (uint32_t i = 0; ok && i < count; i++)
+        ok = lao_object_create(context, &subjects[i].object.desc, &subjects[i].handle) == LAO_OK;
+    for (int k = 0; ok && k < (quick ? 1 : 2); k++) {
+        uint32_t size = quick ? 128 : k == 0 ? 512 : 1024;
+        ok = measure_rays(&device, context, subjects, count, size, SDV_NEAR_MISS_CLOSE, list) &&
+             measure_rays(&device, context, subjects, count, size, SDV_NEAR_MISS_NONE, list);
+    }
+    lao_destroy(context);
+    bench_device_close(&device);
+    return ok;
+}
+
+static bool make_subject(subject *s, uint32_t nodes, uint32_t resolution) {
+    if (!make_tree(nodes, &s->tree) ||
+        !make_grid(&s->tree, nodes > 1 ? resolution : 16, true, &s->grid))
+        return false;
+    s->segments = s->tree.segment_count;
+    return sdv_object_make(NULL, &s->grid, NULL, &s->object) == LAO_OK || bench_fail("no memory");
+}
+
+bool bench_vessel_run(cJSON *document, bool quick) {
+    static const uint32_t nodes[1 + TREES] = {1, 1000, 3000, 6000, 30000, 300000};
+    static const char *const backends[] = {"gl", "vk"};
+    uint32_t count = quick ? 2 : 1 + TREES;
+    subject *subjects = calloc(count, sizeof *subjects);
+    cJSON *fields = cJSON_AddArrayToObject(document, "fields");
+    cJSON *rays = cJSON_AddArrayToObject(document, "rays");
+    bool ok = subjects || bench_fail("no memory");
+    for (uint32_t i = 0; ok && i < count; i++) {
+        ok = make_subject(&subjects[i], nodes[i], quick ? 48 : 128);
+        if (ok && i > 0 && nodes[i] <= 6000)
+            ok = measure_field(fields, &subjects[i].tree, 64) &&
+                 (quick || measure_field(fields, &subjects[i].tree, 128));
+    }
+    for (int b = 0; ok && b < 2; b++)
+        ok = measure_backend(backends[b], subjects, count, quick, rays);
+    for (uint32_t i = 0; subjects && i < count; i++) {
+        sdv_object_free(&subjects[i].object);
+        sdv_grid_free(&subjects[i].grid);
+        sdv_tree_free(&subjects[i].tree);
+    }
+    free(subjects);
+    return ok;
+}
+
+static double number(const cJSON *row, const char *name) {
+    return cJSON_GetNumberValue(cJSON_GetObjectItemCaseSensitive(row, name));
+}
+
+void bench_vessel_print(const cJSON *document) {
+    const cJSON *row;
+    printf("field: segments  resolution     cells    listed  bytes a cell    ms, 1 thread  2 "
+           "threads\n");
+    cJSON_ArrayForEach(row, cJSON_GetObjectItemCaseSensitive(document, "fields"))
+        printf("%15.0f %11.0f %9.0f %9.0f %13.1f %16.1f %10.1f\n", number(row, "segments"),
+               number(row, "resolution"), number(row, "cells"), number(row, "listed"),
+               number(row, "cell_bytes"), number(row, "ms_1"), number(row, "ms_2"));
+    printf(
+        "\nrays: segments  backend  size  near miss   hits  steps  trace ms  shade ms  trace over "
+        "one ball's\n");
+    cJSON_ArrayForEach(row, cJSON_GetObjectItemCaseSensitive(document, "rays")) printf(
+        "%14.0f %8s %5.0f %10s %6.2f %6.1f %9.1f %9.1f %11.2f\n", number(row, "segments"),
+        cJSON_GetStringValue(cJSON_GetObjectItemCaseSensitive(row, "backend")), number(row, "size"),
+        cJSON_GetStringValue(cJSON_GetObjectItemCaseSensitive(row, "near_miss")),
+        number(row, "hits"), number(row, "steps"), number(row, "trace_ms"), number(row, "shade_ms"),
+        number(row, "trace_over_ball"));
+}

@@ -1,0 +1,146 @@
+#include "legend.h"
+
+#include "text.h"
+
+#include <math.h>
+#include <string.h>
+
+/* One legend's place in pixels: the bar, its ticks and the whole with its text. */
+typedef struct layout {
+    bool upright;
+    int64_t x, y, length, thickness; /* of the bar */
+    int64_t tick, gap;               /* length of a tick; between things */
+    int64_t box[4];                  /* x, y, width, height of all */
+    text_style style;
+    colour_ticks ticks;
+} layout;
+
+static double text_size(const picture *p) {
+    double least = p->width < p->height ? p->width : p->height;
+    return fmin(fmax(0.028 * least, 11), 80);
+}
+
+/* Widest number beside the bar. */
+static int64_t widest_tick(const layout *l) {
+    int64_t widest = 0;
+    for (uint32_t i = 0; i < l->ticks.count; i++) {
+        char text[32];
+        colour_tick_text(&l->ticks, i, text, sizeof text);
+        int64_t width = text_width(text, &l->style);
+        widest = width > widest ? width : widest;
+    }
+    return widest;
+}
+
+/* Sizes, as if the whole began at (0, 0). */
+static layout measure(const picture *p, legend_side side, const legend *one) {
+    layout l;
+    memset(&l, 0, sizeof l);
+    double size = text_size(p);
+    l.style.size = size;
+    l.style.outline_width = fmax(1, 0.11 * size);
+    l.upright = side != LEGEND_BOTTOM;
+    l.length = (int64_t)((l.upright ? p->height : p->width) * 0.45);
+    l.thickness = (int64_t)(0.8 * size);
+    l.tick = (int64_t)(0.3 * size) + 1;
+    l.gap = (int64_t)(0.35 * size) + 1;
+    uint32_t most = (uint32_t)fmax(2, (double)l.length / size / (l.upright ? 2.2 : 4));
+    l.ticks = colour_ticks_make(one->range[0], one->range[1], most < 7 ? most : 7);
+    int64_t line = (int64_t)ceil(size), title = 0,
+            width = text_width(one->title ? one->title : "", &l.style);
+    if (one->title && *one->title)
+        title = line + (l.upright ? line / 2 : l.gap / 2);
+    int64_t number = widest_tick(&l);
+    if (l.upright) { /* numbers reach half a line over the ends of the bar */
+        l.box[2] = l.thickness + l.tick + l.gap + number;
+        l.box[3] = title + l.length + line / 2;
+    } else {
+        l.x = number / 2;
+        l.box[2] = l.length + number;
+        l.box[3] = title + l.thickness + l.tick + l.gap + line;
+    }
+    l.box[2] = l.box[2] > width ? l.box[2] : width;
+    l.y = title;
+    return l;
+}
+
+static void move(layout *l, int64_t x, int64_t y) {
+    l->x += x;
+    l->y += y;
+    l->box[0] += x;
+    l->box[1] += y;
+}
+
+/* Dark on light and light on dark; the outline is the other. */
+static void choose_ink(const picture *p, layout *l) {
+    double luma = picture_luma(p, l->box[0], l->box[1], l->box[2], l->box[3], 1);
+    for (int k = 0; k < 3; k++) {
+        l->style.ink[k] = luma > 0.45 ? 0.08 : 0.97;
+        l->style.outline[k] = luma > 0.45 ? 1 : 0.05;
+    }
+}
+
+/* Bar with a frame; low values at the bottom or at the left. */
+static void draw_bar(picture *p, const layout *l, const colour_map *map) {
+    int64_t width = l->upright ? l->thickness : l->length;
+    int64_t height = l->upright ? l->length : l->thickness;
+    int64_t rim = (int64_t)(l->style.size / 18) + 1;
+    picture_fill(p, l->x - 2 * rim, l->y - 2 * rim, width + 4 * rim, height + 4 * rim,
+                 l->style.outline, 0.7);
+    picture_fill(p, l->x - rim, l->y - rim, width + 2 * rim, height + 2 * rim, l->style.ink, 1);
+    for (int64_t i = 0; i < l->length; i++) {
+        double rgb[3];
+        colour_map_at(map, ((double)i + 0.5) / (double)l->length, rgb);
+        if (l->upright)
+            picture_fill(p, l->x, l->y + l->length - 1 - i, l->thickness, 1, rgb, 1);
+        else
+            picture_fill(p, l->x + i, l->y, 1, l->thickness, rgb, 1);
+    }
+}
+
+static bool draw_ticks(picture *p, const layout *l, const double range[2]) {
+    int64_t rim = (int64_t)(l->style.size / 18) + 1;
+    bool ok = true;
+    for (uint32_t i = 0; i < l->ticks.count && ok; i++) {
+        char text[32];
+        double at = (l->ticks.at[i] - range[0]) / (range[1] - range[0]);
+        int64_t along = (int64_t)(at * (double)(l->length - 1) + 0.5);
+        colour_tick_text(&l->ticks, i, text, sizeof text);
+        if (l->upright) {
+            int64_t y = l->y + l->length - 1 - along, x = l->x + l->thickness;
+            picture_fill(p, x, y - rim / 2, l->tick, rim, l->style.ink, 1);
+            ok = text_draw(p, x + l->tick + l->gap, y - (int64_t)(0.5 * l->style.size), TEXT_LEFT,
+                           text, &l->style);
+        } else {
+            int64_t x = l->x + along, y = l->y + l->thickness;
+            picture_fill(p, x - rim / 2, y, rim, l->tick, l->style.ink, 1);
+            ok = text_draw(p, x, y + l->tick + l->gap / 2, TEXT_CENTER, text, &l->style);
+        }
+    }
+    return ok;
+}
+
+static bool draw(picture *p, layout *l, const legend *one) {
+    int64_t title = l->upright ? l->x : l->x + l->length / 2;
+    choose_ink(p, l);
+    draw_bar(p, l, one->map);
+    return draw_ticks(p, l, one->range) &&
+           text_draw(p, title, l->box[1], l->upright ? TEXT_LEFT : TEXT_CENTER,
+                     one->title ? one->title : "", &l->style);
+}
+
+bool legend_draw(picture *p, legend_side side, const legend *legends, uint32_t count) {
+    int64_t margin = (int64_t)(1.2 * text_size(p)), used = margin;
+    bool ok = true;
+    for (uint32_t i = 0; i < count && ok; i++) {
+        layout l = measure(p, side, &legends[i]);
+        int64_t width = p->width, height = p->height;
+        if (side == LEGEND_BOTTOM)
+            move(&l, (width - l.box[2]) / 2, height - used - l.box[3]);
+        else
+            move(&l, side == LEGEND_LEFT ? used : width - used - l.box[2], (height - l.box[3]) / 2);
+        used += margin + (side == LEGEND_BOTTOM ? l.box[3] : l.box[2]);
+        ok = draw(p, &l, &legends[i]);
+    }
+    return ok;
+}

@@ -1,0 +1,262 @@
+#include "vessel.h"
+
+#include "camera.h"
+#include "report.h"
+#include "scene_tree.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+#include <time.h>
+
+static double now(void) {
+    struct timespec t;
+    clock_gettime(CLOCK_MONOTONIC, &t);
+    return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
+}
+
+/* One line per failure; warnings are in the tree. */
+static void on_log(void *user, sdv_log_item item, lao_result result, const char *text) {
+    const cli_tree *tree = user;
+    if (result != LAO_OK && item == SDV_LOG_CANCELLED)
+        cli_go_on();
+    else if (result != LAO_OK)
+        cli_fail("%s: %s", tree->name, text);
+}
+
+/* ---- the tree --------------------------------------------------------------------------- */
+
+static bool read_tree(cli_tree *out) {
+    io_error error;
+    return cli_read(out->source, IO_TREE, &out->contents) &&
+           (io_vessel_build(&out->host, &out->contents.tree, &out->vessel, &error) ||
+            (cli_interrupted() ? cli_go_on() : cli_fail("%s: %s", out->name, error.text)));
+}
+
+static bool make_tree(cli_tree *out) {
+    scene_tree scene;
+    sdv_tree_desc desc;
+    if (!scene_tree_make(out->options->vessel.nodes, 0, &scene))
+        return cli_fail("liver: cannot be grown; ask for fewer --nodes (%d at most)",
+                        SCENE_TREE_MOST);
+    memset(&desc, 0, sizeof desc);
+    sdv_segment *segments = cli_new(scene.segment_count, sizeof *segments);
+    for (uint32_t i = 0; segments && i < scene.segment_count; i++) {
+        segments[i].parent = scene.segments[2 * (size_t)i];
+        segments[i].child = scene.segments[2 * (size_t)i + 1];
+    }
+    desc.node_count = scene.node_count;
+    desc.positions = scene.positions;
+    desc.radii = scene.radii;
+    desc.segment_count = scene.segment_count;
+    desc.segments = segments;
+    bool ok = segments && sdv_tree_build(&out->host, &desc, &out->vessel.tree) == LAO_OK;
+    free(segments);
+    scene_tree_free(&scene);
+    return ok;
+}
+
+/* ---- the layout ------------------------------------------------------------------------- */
+
+static const sdv_attribute *find_attribute(const sdv_tree *tree, const char *name) {
+    for (uint32_t i = 0; i < tree->node_attribute_count; i++) {
+        if (strcmp(tree->node_attributes[i].name, name) == 0)
+            return &tree->node_attributes[i];
+    }
+    return NULL;
+}
+
+/* One number per node to weigh by; *weights stays NULL without --layout-weight. */
+static bool find_weights(const cli_tree *tree, float **weights) {
+    const char *name = tree->options->vessel.weight;
+    const sdv_tree *t = &tree->vessel.tree;
+    if (!name)
+        return true;
+    const sdv_attribute *attribute = find_attribute(t, name);
+    bool radius = !attribute && strcmp(name, "radius") == 0;
+    if (!attribute && !radius)
+        return cli_fail("%s: its nodes have no attribute '%s' for --layout-weight", tree->name,
+                        name);
+    *weights = cli_new(t->node_count, sizeof **weights);
+    uint32_t step = attribute && attribute->components ? attribute->components : 1;
+    for (uint32_t i = 0; *weights && i < t->node_count; i++)
+        (*weights)[i] = radius ? t->nodes[i].w : attribute->values[(size_t)i * step];
+    return *weights != NULL;
+}
+
+static bool lay_out(cli_tree *tree) {
+    const cli_layout_settings *s = &tree->source->layout;
+    sdv_layout_desc desc;
+    float *weights = NULL;
+    memset(&desc, 0, sizeof desc);
+    desc.ph = s->layout_ph;
+    desc.has_ph = (s->set >> CLI_SETTING_layout_ph & 1) != 0;
+    desc.flags = s->layout_all_nodes > 0 || tree->options->vessel.weight ? SDV_LAYOUT_ALL_NODES : 0;
+    if (!find_weights(tree, &weights))
+        return false;
+    desc.scalars = weights;
+    bool ok = sdv_reduce(&tree->host, &tree->vessel.tree, &tree->reduced) == LAO_OK &&
+              sdv_layout_make(&tree->host, &tree->vessel.tree, &tree->reduced, &desc,
+                              &tree->layout) == LAO_OK;
+    free(weights);
+    return ok;
+}
+
+static bool measure(cli_tree *tree) {
+    if (!tree->target)
+        return true;
+    tree->distances = cli_new(tree->reduced.node_count, sizeof *tree->distances);
+    return tree->distances && sdv_target_distances(&tree->host, tree->target, &tree->vessel.tree,
+                                                   &tree->reduced, NULL, tree->distances) == LAO_OK;
+}
+
+bool cli_tree_load(const cli_options *options, cli_tree *out) {
+    memset(out, 0, sizeof *out);
+    out->options = options;
+    out->source = options->file_count ? &options->files[0] : &options->all;
+    out->name = out->source->path ? out->source->path : "liver";
+    out->progress = (cli_progress){"measuring", out->name, -1};
+    out->threads = cli_threads_start();
+    if (!out->threads)
+        return false;
+    out->host.job = cli_threads_job(out->threads, &out->progress);
+    out->host.log = on_log;
+    out->host.user = out;
+    bool ok = (out->source->path ? read_tree(out) : make_tree(out)) && cli_target_make(out) &&
+              lay_out(out) && measure(out);
+    cli_progress_end(&out->progress);
+    return ok;
+}
+
+/* ---- the field -------------------------------------------------------------------------- */
+
+/* Settings of a style, unless they are given. */
+typedef struct style_row {
+    const char *style, *setting;
+    float value;
+} style_row;
+static const style_row styles[] = {
+    {"plain", "near_miss", SDV_NEAR_MISS_NONE},
+    {"plain", "field_occlusion", 0},
+    {"ink", "surface_ambient", 1},
+    {"ink", "surface_diffuse", 0},
+    {"ink", "surface_specular", 0},
+    {"ink", "field_occlusion", 0},
+    {"ink", "silhouette", 3},
+    {"ink", "contour", 2},
+    {"ink", "shadow_softness", 0},
+    {"ink", "shadow_strength", 0.8f},
+    {"glow", "near_miss", SDV_NEAR_MISS_NONE},
+    {"glow", "surface_ambient", 0.55f},
+    {"glow", "surface_diffuse", 0.5f},
+    {"glow", "occlusion_reach", 8},
+};
+
+static void add_style(const char *style, sdv_settings *settings) {
+    const lao_module *module = sdv_module();
+    float *values = (float *)(void *)((char *)settings + sizeof settings->set);
+    for (size_t i = 0; style && i < sizeof styles / sizeof *styles; i++) {
+        int setting = lao_setting_find(module, styles[i].setting);
+        uint64_t bit = (uint64_t)1 << setting;
+        if (strcmp(styles[i].style, style) != 0 || settings->set & bit)
+            continue;
+        values[setting] = styles[i].value;
+        settings->set |= bit;
+    }
+}
+
+/* Six points of every node's sphere tell how far the tree reaches; of a union the corners of its
+ * shape too. */
+static bool make_points(cli_tree *tree, io_lines *lines) {
+    const sdv_tree *t = &tree->vessel.tree;
+    const sdv_shapes *shapes = &tree->carving.shapes;
+    float *to = lines->points = cli_new(6 * (size_t)t->node_count + 2 * CLI_SHAPES, 12);
+    if (!to)
+        return false;
+    for (uint32_t i = 0; i < 6 * t->node_count; i++, to += 3) {
+        const lao_v4 *node = &t->nodes[i / 6];
+        to[0] = node->x;
+        to[1] = node->y;
+        to[2] = node->z;
+        to[i % 3] += i % 6 < 3 ? node->w : -node->w;
+    }
+    for (uint32_t i = 0; i < 2 * shapes->count; i++) {
+        const sdv_shape *s = &shapes->shapes[i / 2];
+        const float *a = &s->a.x, *b = &s->b.x;
+        if (s->operation != SDV_UNION || s->kind == SDV_SHAPE_PLANE)
+            continue;
+        for (int k = 0; k < 3; k++) {
+            float half = s->kind == SDV_SHAPE_BALL ? s->a.w : b[k];
+            float whole = s->kind == SDV_SHAPE_FIELD ? (b[k] - 1) * s->a.w : 0;
+            to[k] = s->kind == SDV_SHAPE_FIELD ? a[k] + (i % 2 ? whole : 0)
+                                               : a[k] + (i % 2 ? half : -half);
+        }
+        to += 3;
+    }
+    lines->point_count = (uint32_t)((to - lines->points) / 3);
+    return true;
+}
+
+/* The module's settings: those given, those of the style; a dump wants every ray's nearest miss. */
+static void make_settings(const cli_tree *tree, sdv_settings *settings) {
+    *settings = tree->source->vessel;
+    add_style(tree->options->vessel.style, settings);
+    if (tree->options->dump && !(settings->set & SDV_SET(near_miss))) {
+        settings->near_miss = SDV_NEAR_MISS_EXACT;
+        settings->set |= SDV_SET(near_miss);
+    }
+}
+
+static bool make_scene(cli_tree *tree) {
+    cli_scene *scene = &tree->scene;
+    cli_set *set = cli_new(1, sizeof *set);
+    if (!set)
+        return false;
+    memset(set, 0, sizeof *set);
+    scene->sets = set;
+    scene->count = 1;
+    scene->module = sdv_module();
+    camera_view("iso", scene->direction, scene->up);
+    if (tree->options->view)
+        camera_view(tree->options->view, scene->direction, scene->up);
+    memcpy(scene->origin, tree->vessel.origin, sizeof scene->origin);
+    set->source = tree->source;
+    set->name = tree->name;
+    set->settings = tree->source->settings;
+    set->object = &tree->object.desc;
+    make_settings(tree, &tree->settings);
+    set->module_settings[0] = &tree->settings;
+    return make_points(tree, &set->lines);
+}
+
+bool cli_tree_prepare(cli_tree *tree) {
+    sdv_grid_desc desc;
+    memset(&desc, 0, sizeof desc);
+    desc.resolution = tree->options->vessel.grid;
+    tree->progress = (cli_progress){"measuring the field of", tree->name, -1};
+    double begin = now();
+    bool ok = sdv_grid_build(&tree->host, &tree->vessel.tree, &desc, &tree->grid) == LAO_OK;
+    cli_progress_end(&tree->progress);
+    tree->grid_seconds = now() - begin;
+    ok = ok && cli_go_on() && cli_carving_make(tree) && cli_tree_colour(tree) &&
+         sdv_object_make(&tree->host, &tree->grid, tree->colors, &tree->object) == LAO_OK;
+    if (ok && tree->carving.shapes.count)
+        ok = sdv_object_shapes(&tree->host, &tree->carving.shapes, NULL, &tree->object) == LAO_OK;
+    return ok && make_scene(tree);
+}
+
+void cli_tree_free(cli_tree *tree) {
+    cli_scene_free(&tree->scene);
+    sdv_object_free(&tree->object);
+    free(tree->colors);
+    sdv_grid_free(&tree->grid);
+    free(tree->carving.fields);
+    free(tree->distances);
+    sdv_target_free(tree->target);
+    sdv_layout_free(&tree->layout);
+    sdv_reduced_free(&tree->reduced);
+    io_vessel_free(&tree->vessel);
+    io_contents_free(&tree->contents);
+    cli_threads_stop(tree->threads);
+    memset(tree, 0, sizeof *tree);
+}

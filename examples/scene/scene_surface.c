@@ -1,0 +1,224 @@
+/* Surfaces as unions of tubes, balls and ellipsoids that flow into each other (a polynomial smooth
+ * minimum), sampled on a lattice and meshed. */
+#include "scene_surface.h"
+#include "flow_phantom.h"
+#include "scene_build.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* ---- distances */
+
+static double ball(vec3 p, vec3 centre, double radius) {
+    vec3 d = vec3_sub(p, centre);
+    return sqrt(vec3_dot(d, d)) - radius;
+}
+
+/* A tube from a to b, its radius from ra to rb: near enough to a distance for gentle tapers. */
+static double tube(vec3 p, vec3 a, vec3 b, double ra, double rb) {
+    vec3 d = vec3_sub(b, a), q = vec3_sub(p, a);
+    double u = vec3_dot(q, d) / vec3_dot(d, d);
+    u = u < 0 ? 0 : u > 1 ? 1 : u;
+    return ball(p, vec3_mad(a, d, u), ra + u * (rb - ra));
+}
+
+/* Near enough to a distance on the surface of an ellipsoid. */
+static double ellipsoid(vec3 p, vec3 centre, vec3 radii) {
+    vec3 d = vec3_sub(p, centre);
+    vec3 one = vec3_make(d.x / radii.x, d.y / radii.y, d.z / radii.z);
+    vec3 two = vec3_make(one.x / radii.x, one.y / radii.y, one.z / radii.z);
+    double k = sqrt(vec3_dot(one, one)), l = sqrt(vec3_dot(two, two));
+    return l > 1e-12 ? k * (k - 1) / l : -radii.x;
+}
+
+/* The lesser of two distances, blended where they differ by less than k; and the greater. */
+static double join(double a, double b, double k) {
+    double h = k - fabs(a - b);
+    return (a < b ? a : b) - (h > 0 ? h * h / (4 * k) : 0);
+}
+static double cut(double a, double b, double k) {
+    return -join(-a, -b, k);
+}
+
+/* ---- the surfaces */
+
+/* A cerebral artery that bends and divides, with a sac on the outer side of the bend and a bleb on
+ * the sac. */
+static double aneurysm(vec3 p) {
+    vec3 last = vec3_make(0, 0, 0);
+    double wall = 1e9;
+    for (int i = 0; i <= 48; i++) { /* the parent, a bend out of the plane */
+        double t = i / 48.0, a = 3.4 * t - 0.5;
+        vec3 next = vec3_make(-9 * cos(a) - 5, 3.0 * sin(2.2 * t), 9 * sin(a) - 11.5 * (1 - t));
+        double piece = i ? tube(p, last, next, 2.1 - 0.25 * (t - 1 / 48.0), 2.1 - 0.25 * t) : wall;
+        wall = piece < wall ? piece : wall;
+        last = next;
+    }
+    wall = join(wall, tube(p, last, vec3_make(9, 7, -13), 1.8, 1.3), 1.2);
+    wall = join(wall, tube(p, last, vec3_make(14, -6, 1), 1.8, 1.4), 1.2);
+    wall = join(wall, ellipsoid(p, vec3_make(-4.5, 2, 11), vec3_make(5.6, 5, 5.2)), 2.4);
+    return join(wall, ball(p, vec3_make(-8.6, 0, 14.6), 1.9), 1.3); /* the bleb */
+}
+
+/* The vessel of flow_phantom.h, whose pathlines are the scene `flow`, closed at its two ends. */
+static double aorta(vec3 p) {
+    const double position[3] = {p.x, p.y, p.z};
+    double end = (-0.6 * p.x - 0.8 * p.y < 0 ? -92.0 : -112.0) - p.z;
+    double wall = flow_phantom_wall(position);
+    return wall > end ? wall : end;
+}
+
+/* Two lobes with a notch, a dent for the gallbladder and a dome under the diaphragm. */
+static double liver(vec3 p) {
+    double wall = ellipsoid(p, vec3_make(30, 0, 0), vec3_make(62, 48, 56));
+    wall = join(wall, ellipsoid(p, vec3_make(-42, 14, 14), vec3_make(58, 30, 30)), 26);
+    wall = join(wall, ellipsoid(p, vec3_make(46, -8, -42), vec3_make(34, 30, 32)), 24);
+    wall = cut(wall, -ellipsoid(p, vec3_make(-6, 22, -34), vec3_make(12, 60, 34)), 12); /* notch */
+    wall = cut(wall, -tube(p, vec3_make(16, 30, -60), vec3_make(24, 4, -26), 13, 9), 10);
+    wall = cut(wall, -tube(p, vec3_make(-20, -30, 10), vec3_make(24, -56, 2), 12, 12), 12);
+    return cut(wall, -ball(p, vec3_make(-30, -40, -78), 62), 16); /* the stomach's side */
+}
+
+/* The upper half of a thigh bone: head, neck, two trochanters, a shaft that bends, and the fovea.
+ */
+static double bone(vec3 p) {
+    double wall = tube(p, vec3_make(0, 0, -70), vec3_make(-1, 4, -20), 10, 10.5);
+    wall = join(wall, tube(p, vec3_make(-1, 4, -20), vec3_make(0, 0, 28), 10.5, 14), 6);
+    wall = join(wall, tube(p, vec3_make(0, 0, 26), vec3_make(28, 3, 50), 12, 9.5), 12);
+    wall = join(wall, ball(p, vec3_make(34, 4, 55), 16.5), 5);
+    wall = join(wall, ellipsoid(p, vec3_make(-9, -4, 40), vec3_make(10, 13, 16)), 10);
+    wall = join(wall, ball(p, vec3_make(12, -9, 8), 6.5), 7);
+    wall = cut(wall, -tube(p, vec3_make(2, -22, 40), vec3_make(-2, -10, 44), 5, 3), 6);
+    return cut(wall, -ball(p, vec3_make(49, 4, 64), 3.2), 1.5);
+}
+
+typedef struct row {
+    const char *name, *help;
+    double (*distance)(vec3 p);
+    double low[3], high[3], spacing;
+    float view_direction[3], up[3];
+} row;
+// clang-format off
+static const row rows[] = {
+    {"aneurysm", "a cerebral artery with an aneurysm and a bleb on it", aneurysm,
+     {-22, -12, -21}, {17, 12, 24}, 0.3, {0.25f, 0.96f, -0.12f}, {0, 0, 1}},
+    {"aorta", "the arch with a bulge in which the scene `flow` flows", aorta,
+     {-48, -41, -115}, {57, 48, 49}, 1, {0.96f, -0.28f, 0}, {0, 0, 1}},
+    {"liver", "a liver-like organ", liver,
+     {-106, -64, -84}, {98, 60, 66}, 1.5, {0.12f, -0.96f, 0.25f}, {0, 0, 1}},
+    {"bone", "the upper half of a thigh bone", bone,
+     {-26, -26, -86}, {56, 26, 78}, 0.75, {-0.1f, 0.99f, -0.1f}, {0, 0, 1}},
+};
+// clang-format on
+enum { ROWS = sizeof rows / sizeof rows[0] };
+
+static const row *find(const char *name) {
+    for (int i = 0; name && i < ROWS; i++) {
+        if (strcmp(rows[i].name, name) == 0)
+            return rows + i;
+    }
+    return NULL;
+}
+
+const char *const *scene_surface_names(uint32_t *count) {
+    static const char *const names[ROWS] = {"aneurysm", "aorta", "liver", "bone"};
+    *count = ROWS;
+    return names;
+}
+
+const char *scene_surface_help(const char *name) {
+    const row *r = find(name);
+    return r ? r->help : NULL;
+}
+
+double scene_surface_distance(const char *name, const double position[3]) {
+    return find(name)->distance(vec3_make(position[0], position[1], position[2]));
+}
+
+/* ---- meshing */
+
+static double voxel(const row *r, const flow4d_volume *volume, double x, double y, double z) {
+    const double *m = volume->to_world;
+    return r->distance(vec3_make(m[0] * x + m[3], m[5] * y + m[7], m[10] * z + m[11]));
+}
+
+/* The voxels of a cube of BLOCK voxels each way. Far from the wall they are as its middle: the
+ * margin is three times what a distance needs, because ours are only near to distances. */
+enum { BLOCK = 6 };
+static void sample_block(const row *r, const flow4d_volume *volume, const uint32_t first[3],
+                         float *values) {
+    const double half = 0.5 * (BLOCK - 1), reach = 3 * half * sqrt(3.0) * volume->to_world[0];
+    const uint32_t *n = volume->size;
+    double middle = voxel(r, volume, first[0] + half, first[1] + half, first[2] + half);
+    for (uint32_t z = first[2]; z < n[2] && z < first[2] + BLOCK; z++) {
+        for (uint32_t y = first[1]; y < n[1] && y < first[1] + BLOCK; y++) {
+            for (uint32_t x = first[0]; x < n[0] && x < first[0] + BLOCK; x++)
+                values[((size_t)z * n[1] + y) * n[0] + x] =
+                    (float)(fabs(middle) > reach ? middle : voxel(r, volume, x, y, z));
+        }
+    }
+}
+
+static float *sample(const row *r, const flow4d_volume *volume) {
+    const uint32_t *n = volume->size;
+    float *values = malloc((size_t)n[0] * n[1] * n[2] * sizeof *values);
+    uint32_t at[3];
+    for (at[2] = 0; values && at[2] < n[2]; at[2] += BLOCK) {
+        for (at[1] = 0; at[1] < n[1]; at[1] += BLOCK) {
+            for (at[0] = 0; at[0] < n[0]; at[0] += BLOCK)
+                sample_block(r, volume, at, values);
+        }
+    }
+    return values;
+}
+
+bool scene_surface_make(const char *name, double spacing, scene_surface *out) {
+    const row *r = find(name);
+    flow4d_surface_settings settings;
+    flow4d_volume volume;
+    flow4d_surface surface;
+    scene_surface made;
+    float *values;
+    bool good;
+    spacing = r && spacing == 0 ? r->spacing : spacing;
+    if (!r || !(spacing >= 0.04 * r->spacing && spacing <= 100 * r->spacing))
+        return false;
+    memset(&volume, 0, sizeof volume);
+    memset(&settings, 0, sizeof settings);
+    settings.inside_is_less = 1;
+    for (int a = 0; a < 3; a++) {
+        volume.size[a] = (uint32_t)ceil((r->high[a] - r->low[a]) / spacing) + 1;
+        volume.to_world[5 * a] = spacing;
+        volume.to_world[4 * a + 3] = r->low[a];
+    }
+    values = sample(r, &volume);
+    volume.values = values;
+    good = values && flow4d_surface_make(NULL, &volume, 0, &settings, &surface) == LAO_OK;
+    free(values);
+    if (!good)
+        return false;
+    memset(&made, 0, sizeof made);
+    made.vertex_count = surface.vertex_count;
+    made.triangle_count = surface.triangle_count;
+    made.positions = malloc(sizeof(float) * 3 * ((size_t)surface.vertex_count + 1));
+    made.triangles = malloc(sizeof(uint32_t) * 3 * ((size_t)surface.triangle_count + 1));
+    good = made.positions && made.triangles;
+    if (good) {
+        memcpy(made.positions, surface.vertices, sizeof(float) * 3 * surface.vertex_count);
+        memcpy(made.triangles, surface.triangles, sizeof(uint32_t) * 3 * surface.triangle_count);
+        memcpy(made.view_direction, r->view_direction, sizeof made.view_direction);
+        memcpy(made.up, r->up, sizeof made.up);
+        *out = made;
+    } else {
+        scene_surface_free(&made);
+    }
+    flow4d_surface_free(&surface);
+    return good;
+}
+
+void scene_surface_free(scene_surface *surface) {
+    free(surface->positions);
+    free(surface->triangles);
+    memset(surface, 0, sizeof *surface);
+}

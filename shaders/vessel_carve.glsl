@@ -1,0 +1,68 @@
+/* A ray per pixel through a vessel tree that is combined with shapes (L19 Fig. 11): sdv_trace_shapes by texel fetches. */
+LAO_TEX(0, samplerBuffer, box)
+LAO_TEX(1, samplerBuffer, cells)
+LAO_TEX(2, samplerBuffer, ids)
+LAO_TEX(3, samplerBuffer, cones)
+LAO_TEX(4, samplerBuffer, shapes)
+LAO_TEX(5, samplerBuffer, fields)
+
+LAO_OUT(0, vec4, out_position) /* world, mm; number of the cone, -1: nothing was hit, -2: a shape */
+LAO_OUT(1, vec4, out_normal)   /* world, towards the viewer; no near miss */
+LAO_OUT(2, vec4, out_ray)      /* mm along the ray; which shape; samples; 1: from inside the solid */
+
+#ifdef LAO_FRAGMENT
+void land(sdv_box b, lao_v3 origin, lao_v3 direction, float start, bool inside) {
+    float t = start;
+    for (int i = 0; i <= SDV_POLISH_ROUNDS; i++) {
+        lao_v3 p = lao_v3_along(origin, direction, t);
+        sdv_solid_sample s = sdv_solid_at(cells, ids, cones, shapes, fields, b, p);
+        lao_v3 gradient;
+        if (s.solid.part >= 0) {
+            gradient = lao_v3_scale(sdv_shape_gradient_at(fields, sdv_shape_fetch(shapes, s.solid.part), p), s.solid.side);
+            out_position = vec4(p, -2.0);
+        } else {
+            int at = 2 * int(s.cone);
+            gradient = sdv_round_cone_gradient(p, texelFetch(cones, at), texelFetch(cones, at + 1));
+            out_position = vec4(p, s.cone);
+        }
+        out_normal.xyz = inside ? lao_v3_scale(gradient, -1.0) : gradient;
+        out_ray.xy = vec2(t, s.solid.part >= 0 ? float(s.solid.part) : 0.0);
+        t = sdv_polish(t, s.solid.distance, gradient, direction, b.cell);
+    }
+}
+
+void main() {
+    ivec2 pixel = LAO_PIXEL;
+    lao_v2 slope = lao_pixel_slope(lao_frame.ray, float(pixel.x) + 0.5, float(pixel.y) + 0.5);
+    lao_v3 origin = lao_ray_origin(lao_frame.world, slope, lao_frame.depth.w);
+    lao_v3 direction = lao_ray_direction(lao_frame.world, slope, lao_frame.depth.w);
+    sdv_box b = sdv_box_fetch(box);
+    lao_v2 span = sdv_solid_span(sdv_ray_box(origin, direction, b), texelFetch(shapes, 0).y > 0.5);
+    LAO_EXACT float t = span.x;
+    float steps = 0.0;
+    bool inside = false;
+    bool hit = false;
+    out_position = vec4(0.0, 0.0, 0.0, -1.0);
+    out_normal = vec4(0.0, 0.0, 0.0, SDV_FAR);
+    for (int i = 0; i < SDV_MAX_STEPS; i++) {
+        if (!(t <= span.y) || hit) {
+            break;
+        }
+        sdv_solid s =
+            sdv_solid_at(cells, ids, cones, shapes, fields, b, lao_v3_along(origin, direction, t)).solid;
+        if (i == 0) {
+            inside = s.distance < 0.0;
+        }
+        float left = inside ? -s.distance : s.distance;
+        steps += 1.0;
+        hit = left < sdv_hit_distance(b.cell);
+        if (!hit) {
+            t = t + left;
+        }
+    }
+    out_ray = vec4(0.0, 0.0, steps, inside ? 1.0 : 0.0);
+    if (hit) {
+        land(b, origin, direction, t, inside);
+    }
+}
+#endif

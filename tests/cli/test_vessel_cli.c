@@ -1,0 +1,415 @@
+/* `lineao vessel` keeps its contract: trees, layouts, distances, cuts and cameras come out as files
+ * whose numbers agree with each other and with the shapes that were asked for, on both backends
+ * alike; nothing is drawn unless a picture, a dump or timings are asked for; wrong usage is one
+ * line.
+ */
+#include "program.h"
+
+#include "image.h"
+#include "sdfvessel.h"
+
+#include <cJSON.h>
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <cmocka.h>
+
+static const char *program; /* its path, from the command line */
+
+#define RUN(...) program_start(program, false, __VA_ARGS__)
+#define SMALL "--size 96x72 --ssaa 1 --grid 48 "
+
+static void expect_ok(program_run run) {
+    if (run.code != 0)
+        print_error("%s", run.err);
+    assert_int_equal(run.code, 0);
+    program_free(&run);
+}
+
+static void expect_fault(program_run run, int code, const char *word) {
+    if (run.code != code || !strstr(run.err, word))
+        print_error("expected %d and '%s', got %d: %s", code, word, run.code, run.err);
+    assert_int_equal(run.code, code);
+    assert_int_equal(program_lines(run.err), 1);
+    assert_int_equal(strncmp(run.err, "lineao: ", 8), 0);
+    assert_non_null(strstr(run.err, word));
+    assert_string_equal(run.out, "");
+    program_free(&run);
+}
+
+static cJSON *read_json(const char *path) {
+    FILE *file = fopen(path, "rb");
+    assert_non_null(file);
+    char *text = calloc(1, 1 << 22);
+    assert_non_null(text);
+    assert_true(fread(text, 1, (1 << 22) - 1, file) > 0);
+    fclose(file);
+    cJSON *json = cJSON_Parse(text);
+    assert_non_null(json);
+    free(text);
+    return json;
+}
+
+static double number(const cJSON *object, const char *key) {
+    const cJSON *item = cJSON_GetObjectItem(object, key);
+    assert_true(cJSON_IsNumber(item));
+    return item->valuedouble;
+}
+
+static bool exists(const char *path) {
+    struct stat s;
+    return stat(path, &s) == 0;
+}
+
+static void write_file(const char *path, const char *text) {
+    FILE *file = fopen(path, "wb");
+    assert_non_null(file);
+    assert_true(fputs(text, file) >= 0);
+    assert_int_equal(fclose(file), 0);
+}
+
+/* A Y of three limbs, 1100 mm away from the origin, where floats are coarse. */
+static void write_y(void) {
+    write_file("y.swc", "1 0 0 0 -1100 2 -1\n2 0 0 10 -1100 2 1\n3 0 -8 18 -1100 1 2\n"
+                        "4 0 8 18 -1100 1.5 2\n5 0 16 24 -1096 1 4\n");
+    write_file("cam.json", "{\"eye\":[4,12,-1040],\"center\":[4,12,-1100],\"up\":[0,1,0],"
+                           "\"fovy\":32}");
+}
+static const double y_nodes[5][4] = {{0, 0, -1100, 2},
+                                     {0, 10, -1100, 2},
+                                     {-8, 18, -1100, 1},
+                                     {8, 18, -1100, 1.5},
+                                     {16, 24, -1096, 1}};
+static const int y_segments[4][2] = {{0, 1}, {1, 2}, {1, 3}, {3, 4}};
+#define Y "y.swc --unit mm --camera cam.json " SMALL
+
+/* Signed distance to one limb in double precision, by the least over its balls. */
+static double limb_distance(int limb, const double p[3]) {
+    const double *a = y_nodes[y_segments[limb][0]], *b = y_nodes[y_segments[limb][1]];
+    double least = INFINITY;
+    for (int i = 0; i <= 20000; i++) {
+        double t = i / 20000.0, sum = 0;
+        for (int k = 0; k < 3; k++)
+            sum += (p[k] - a[k] - t * (b[k] - a[k])) * (p[k] - a[k] - t * (b[k] - a[k]));
+        least = fmin(least, sqrt(sum) - a[3] - t * (b[3] - a[3]));
+    }
+    return least;
+}
+
+static double y_distance(const double p[3]) {
+    double least = INFINITY;
+    for (int i = 0; i < 4; i++)
+        least = fmin(least, limb_distance(i, p));
+    return least;
+}
+
+/* ---- dumps ------------------------------------------------------------------------------ */
+
+typedef struct dump {
+    image_exr image;
+    const float *p[3], *n[3], *segment, *mask, *dmin, *distance;
+    size_t count;
+} dump;
+
+static void read_dump(const char *path, dump *out) {
+    const image_part *part;
+    memset(out, 0, sizeof *out);
+    assert_true(image_read_exr(path, &out->image, NULL));
+    out->p[0] = image_exr_channel(&out->image, "position.X", &part);
+    out->p[1] = image_exr_channel(&out->image, "position.Y", NULL);
+    out->p[2] = image_exr_channel(&out->image, "position.Z", NULL);
+    out->n[0] = image_exr_channel(&out->image, "normal.X", NULL);
+    out->n[1] = image_exr_channel(&out->image, "normal.Y", NULL);
+    out->n[2] = image_exr_channel(&out->image, "normal.Z", NULL);
+    out->segment = image_exr_channel(&out->image, "segment.V", NULL);
+    out->mask = image_exr_channel(&out->image, "mask.V", NULL);
+    out->dmin = image_exr_channel(&out->image, "dmin.V", NULL);
+    out->distance = image_exr_channel(&out->image, "distance.V", NULL);
+    assert_true(out->p[0] && out->p[2] && out->n[0] && out->segment && out->mask && out->dmin);
+    assert_non_null(image_exr_channel(&out->image, "out.R", NULL));
+    out->count = (size_t)part->width * part->height;
+}
+
+static void test_dump(void **state) {
+    dump gl, vk;
+    uint32_t hits = 0, misses = 0;
+    (void)state;
+    expect_ok(RUN("vessel " Y "--dump gl.exr --target 0,5,-1090,3"));
+    expect_ok(RUN("vessel " Y "--dump vk.exr --target 0,5,-1090,3 --backend vk"));
+    read_dump("gl.exr", &gl);
+    read_dump("vk.exr", &vk);
+    assert_non_null(gl.distance);
+    for (size_t i = 0; i < gl.count; i++) {
+        const double p[3] = {(double)gl.p[0][i], (double)gl.p[1][i], (double)gl.p[2][i]};
+        double normal = 0;
+        assert_true((gl.segment[i] >= 0) == (gl.mask[i] == 1));
+        assert_memory_equal(&gl.segment[i], &vk.segment[i], 4);
+        assert_memory_equal(&gl.dmin[i], &vk.dmin[i], 4);
+        for (int k = 0; k < 3; k++) {
+            assert_memory_equal(&gl.p[k][i], &vk.p[k][i], 4);
+            assert_memory_equal(&gl.n[k][i], &vk.n[k][i], 4);
+            normal += (double)gl.n[k][i] * gl.n[k][i];
+        }
+        if (gl.segment[i] < 0) {
+            misses++;
+            continue;
+        }
+        hits++;
+        if (hits % 7 == 0) { /* the oracle is slow */
+            double apart =
+                sqrt(p[0] * p[0] + (p[1] - 5) * (p[1] - 5) + (p[2] + 1090) * (p[2] + 1090)) - 3;
+            assert_true(fabs(y_distance(p)) < 2e-3);
+            assert_true(fabs(limb_distance((int)gl.segment[i], p)) < 2e-3);
+            assert_true(fabs(normal - 1) < 1e-5);
+            assert_true(fabs((double)gl.distance[i] - apart) < 1e-3);
+        }
+    }
+    assert_in_range(hits, 200, 5000);
+    assert_in_range(misses, 200, 7000);
+    image_exr_free(&gl.image);
+    image_exr_free(&vk.image);
+}
+
+static void test_cuts(void **state) {
+    dump d;
+    uint32_t cut = 0, left = 0;
+    (void)state;
+    expect_ok(RUN("vessel " Y "--dump cut.exr --subtract plane:0,0,-1,1100"));
+    read_dump("cut.exr", &d); /* the half in front, z > -1100, goes */
+    for (size_t i = 0; i < d.count; i++) {
+        if (d.segment[i] == -1)
+            continue;
+        assert_true(d.p[2][i] < -1100 + 1e-3f || d.segment[i] >= 0);
+        left++;
+        if (d.segment[i] == -2) {
+            cut++;
+            assert_true(fabsf(d.p[2][i] + 1100) < 1e-3f);
+            assert_true(fabsf(d.n[2][i] - 1) < 1e-5f);
+        }
+    }
+    assert_in_range(cut, 200, left);
+    image_exr_free(&d.image);
+    expect_ok(RUN("vessel " Y "--dump cut.exr --intersect sphere:0,10,-1100,5 --union "
+                  "box:-9,-2,-1101,-5,2,-1099"));
+    read_dump("cut.exr", &d);
+    for (size_t i = 0; i < d.count; i++) {
+        double x = (double)d.p[0][i], y = (double)d.p[1][i] - 10, z = (double)d.p[2][i] + 1100;
+        bool boxed = x > -9.01 && x < -4.99 && y > -12.01 && y < -7.99;
+        if (d.segment[i] != -1)
+            assert_true(boxed || x * x + y * y + z * z < 25.01);
+    }
+    image_exr_free(&d.image);
+}
+
+/* A closed mesh cuts like the box that it is; a second tree like itself. */
+static void test_cut_by_files(void **state) {
+    dump box, mesh;
+    uint32_t same = 0, covered = 0;
+    (void)state;
+    write_file("box.obj", "v -20 5 -1110\nv 20 5 -1110\nv 20 30 -1110\nv -20 30 -1110\n"
+                          "v -20 5 -1090\nv 20 5 -1090\nv 20 30 -1090\nv -20 30 -1090\n"
+                          "f 4 3 2 1\nf 5 6 7 8\nf 1 2 6 5\nf 2 3 7 6\nf 3 4 8 7\nf 4 1 5 8\n");
+    expect_ok(RUN("vessel " Y "--dump box.exr --subtract box:-20,5,-1110,20,30,-1090"));
+    expect_ok(RUN("vessel " Y "--dump mesh.exr --subtract box.obj"));
+    read_dump("box.exr", &box);
+    read_dump("mesh.exr", &mesh);
+    for (size_t i = 0; i < box.count; i++) {
+        covered += box.segment[i] != -1;
+        same += box.segment[i] == mesh.segment[i];
+    }
+    assert_in_range(covered, 50, 3000);
+    assert_in_range(same, box.count - box.count / 200, box.count); /* sampled: the rim may differ */
+    image_exr_free(&box.image);
+    image_exr_free(&mesh.image);
+    expect_ok(RUN("vessel " Y "--dump tree.exr --subtract y.swc"));
+}
+
+/* ---- numbers ---------------------------------------------------------------------------- */
+
+static void test_layout_and_tree(void **state) {
+    (void)state;
+    expect_ok(RUN("vessel y.swc --unit mm --layout l.json --layout l.svg --tree t.json "
+                  "--target 8,18,-1090,2"));
+    cJSON *tree = read_json("t.json"), *layout = read_json("l.json");
+    const cJSON *nodes = cJSON_GetObjectItem(tree, "nodes"), *item;
+    assert_int_equal(cJSON_GetArraySize(nodes), 5);
+    for (int i = 0; i < 5; i++) {
+        const cJSON *node = cJSON_GetArrayItem(nodes, i), *p = cJSON_GetObjectItem(node, "p");
+        for (int k = 0; k < 3; k++)
+            assert_true(fabs(cJSON_GetArrayItem(p, k)->valuedouble - y_nodes[i][k]) < 1e-5);
+        assert_true(fabs(number(node, "r") - y_nodes[i][3]) < 1e-6);
+    }
+    const cJSON *segments = cJSON_GetObjectItem(tree, "segments");
+    assert_int_equal(cJSON_GetArraySize(segments), 4);
+    for (int i = 0; i < 4; i++) {
+        for (int k = 0; k < 2; k++)
+            assert_int_equal(cJSON_GetArrayItem(cJSON_GetArrayItem(segments, i), k)->valueint,
+                             y_segments[i][k]);
+    }
+    int found = 0;
+    cJSON_ArrayForEach(item, cJSON_GetObjectItem(layout, "nodes")) {
+        /* Node 4 and its edge from 1: limbs 2 and 3. The ball's centre is 10 mm from limb 2. */
+        assert_in_range((int)(1e6 * number(item, "h")), 0, 1000000);
+        const cJSON *distance = cJSON_GetObjectItem(item, "distance");
+        if (number(item, "id") == 4) {
+            const double centre[3] = {8, 18, -1090};
+            double truth = fmin(limb_distance(2, centre), limb_distance(3, centre)) - 2;
+            assert_true(fabs(distance->valuedouble - truth) < 1e-3);
+            found++;
+        }
+        if (number(item, "parent") == -1)
+            assert_true(cJSON_IsNull(distance));
+    }
+    assert_int_equal(found, 1);
+    cJSON_Delete(tree);
+    cJSON_Delete(layout);
+    FILE *svg = fopen("l.svg", "rb");
+    char head[64] = "";
+    assert_non_null(svg);
+    assert_true(fread(head, 1, sizeof head - 1, svg) > 0);
+    fclose(svg);
+    assert_non_null(strstr(head, "<svg"));
+}
+
+/* The numbers of a path: a straight needle beside the trunk. */
+static void test_path(void **state) {
+    (void)state;
+    expect_ok(RUN("vessel y.swc --unit mm --layout l.json --path -5,-10,-1100:-5,12,-1100"));
+    cJSON *layout = read_json("l.json");
+    const cJSON *item;
+    cJSON_ArrayForEach(item, cJSON_GetObjectItem(layout, "nodes")) {
+        if (number(item, "id") == 1) /* the trunk: radius 2, axis at x = 0 */
+            assert_true(fabs(number(item, "distance") - 3) < 1e-4);
+    }
+    cJSON_Delete(layout);
+}
+
+/* Without a picture no GPU is opened: a device that does not exist goes unnoticed. */
+static void test_no_gpu(void **state) {
+    (void)state;
+    setenv("VK_ICD_FILENAMES", "/nowhere.json", 1);
+    expect_ok(RUN("vessel --nodes 200 --layout l.json --backend vk"));
+    program_run run = RUN("vessel --nodes 200 " SMALL "-o never.png --backend vk");
+    assert_int_equal(run.code, 1);
+    assert_false(exists("never.png"));
+    program_free(&run);
+}
+
+static void test_cameras(void **state) {
+    dump one, all;
+    (void)state;
+    write_file("cams.json", "[{\"eye\":[4,12,-1040],\"center\":[4,12,-1100],\"up\":[0,1,0],"
+                            "\"fovy\":32},{\"eye\":[60,12,-1100],\"center\":[0,12,-1100],"
+                            "\"up\":[0,1,0],\"ortho_height\":40}]");
+    expect_ok(RUN("vessel y.swc --unit mm " SMALL "--cameras cams.json -o f_%%04d.png --dump "
+                  "f_%%04d.exr --timings t.json --save-camera used.json"));
+    assert_true(exists("f_0000.png") && exists("f_0001.png") && exists("f_0001.exr"));
+    assert_false(exists("f_0002.png"));
+    expect_ok(RUN("vessel " Y "--dump one.exr"));
+    read_dump("one.exr", &one);
+    read_dump("f_0000.exr", &all);
+    assert_memory_equal(one.segment, all.segment, 4 * one.count);
+    image_exr_free(&one.image);
+    image_exr_free(&all.image);
+    expect_ok(RUN("vessel --nodes 100 " SMALL "--frames 2 -o turn.png"));
+    assert_true(exists("turn_0000.png") && exists("turn_0001.png"));
+}
+
+static void test_looks(void **state) {
+    static const char *const looks[] = {"--style plain",
+                                        "--style ink",
+                                        "--style glow",
+                                        "--color radius",
+                                        "--color order",
+                                        "--color #804020",
+                                        "--set near_miss=exact",
+                                        "--set outline_unit=mm --silhouette 1",
+                                        "--set layout_ph=0 --set width=2"};
+    (void)state;
+    for (size_t i = 0; i < sizeof looks / sizeof *looks; i++)
+        expect_ok(RUN("vessel " Y "-o look.png %s", looks[i]));
+    expect_ok(RUN("vessel " Y "-o look.png --color distance --target 0,0,-1100,1 --range 0,9"));
+    program_run run = RUN("vessel " Y "-o look.png --json");
+    assert_int_equal(run.code, 0);
+    cJSON *json = cJSON_Parse(run.out);
+    assert_non_null(json);
+    assert_true(number(json, "segments") == 4);
+    cJSON_Delete(json);
+    program_free(&run);
+}
+
+static void test_faults(void **state) {
+    static const struct {
+        const char *line, *word;
+        int code;
+    } rows[] = {
+        {"vessel y.swc", "-o out.png", 2},
+        {"vessel y.swc y.swc -o a.png", "second", 2},
+        {"vessel y.swc --grid 4 -o a.png", "16..512", 2},
+        {"vessel y.swc --grid x -o a.png", "--grid", 2},
+        {"vessel y.swc --layout l.txt", ".svg or .json", 2},
+        {"vessel y.swc --nodes 10 -o a.png", "embedded", 2},
+        {"vessel y.swc --color distance -o a.png", "--target", 2},
+        {"vessel y.swc --set silhouete=1 -o a.png", "silhouette", 2},
+        {"vessel y.swc --style wild -o a.png", "--style", 2},
+        {"vessel none.swc -o a.png", "none.swc", 1},
+        {"vessel cam.json -o a.png", "cam.json", 1},
+        {"vessel y.swc --subtract sphere:1,2 --unit mm -o a.png", "shape", 1},
+        {"vessel y.swc --subtract nothing.stl --unit mm -o a.png", "nothing.stl", 1},
+        {"vessel y.swc --path 1,2 --unit mm --layout l.json", "X,Y,Z", 1},
+        {"vessel y.swc --color wss --unit mm -o a.png", "wss", 1},
+        {"vessel y.swc --cameras none.json --unit mm -o a.png", "none.json", 1},
+        {"vessel y.swc --unit mm -o nowhere/a.png", "nowhere", 1},
+    };
+    (void)state;
+    remove("a.png");
+    for (size_t i = 0; i < sizeof rows / sizeof *rows; i++)
+        expect_fault(RUN("%s", rows[i].line), rows[i].code, rows[i].word);
+    assert_false(exists("a.png"));
+}
+
+static void test_help(void **state) {
+    (void)state;
+    program_run run = RUN("help vessel");
+    assert_int_equal(run.code, 0);
+    assert_non_null(strstr(run.out, "--subtract"));
+    assert_non_null(strstr(run.out, "--silhouette"));
+    assert_non_null(strstr(run.out, "--layout-ph"));
+    program_free(&run);
+}
+
+static int enter(void **state) {
+    char folder[] = "/tmp/lineao_vessel_XXXXXX";
+    (void)state;
+    assert_non_null(mkdtemp(folder));
+    assert_int_equal(chdir(folder), 0);
+    write_y();
+    return 0;
+}
+
+static int leave(void **state) {
+    (void)state;
+    return system("rm -f -- *.png *.exr *.json *.svg *.swc *.obj") != 0;
+}
+
+int main(int argc, char **argv) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_help),         cmocka_unit_test(test_faults),
+        cmocka_unit_test(test_dump),         cmocka_unit_test(test_cuts),
+        cmocka_unit_test(test_cut_by_files), cmocka_unit_test(test_layout_and_tree),
+        cmocka_unit_test(test_path),         cmocka_unit_test(test_cameras),
+        cmocka_unit_test(test_looks),        cmocka_unit_test(test_no_gpu),
+    };
+    if (argc < 2)
+        return 1;
+    program = argv[1];
+    return cmocka_run_group_tests(tests, enter, leave);
+}

@@ -1,0 +1,139 @@
+/* Proves that the embedded surfaces are closed, in one piece, outward, on the wall that their
+   formulas describe and clear of the lattice's border; that spacing refines them; and that the
+   phantom's pathlines run inside the aorta. */
+#include "surface_host.h"
+
+#include "flow_phantom.h"
+#include "scene.h"
+#include "scene_surface.h"
+
+#include <stdarg.h>
+#include <setjmp.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <cmocka.h>
+
+static vsf_mesh mesh_of(const scene_surface *surface, surface_host *host) {
+    vsf_host h = surface_host_make(host);
+    vsf_mesh_desc desc;
+    vsf_mesh mesh;
+    memset(&desc, 0, sizeof desc);
+    desc.vertex_count = surface->vertex_count;
+    desc.positions = surface->positions;
+    desc.triangle_count = surface->triangle_count;
+    desc.triangles = surface->triangles;
+    assert_int_equal(vsf_mesh_build(&h, &desc, &mesh), LAO_OK);
+    return mesh;
+}
+
+static void surfaces_are_whole(void **state) {
+    uint32_t count;
+    const char *const *names = scene_surface_names(&count);
+    (void)state;
+    assert_int_equal(count, 4);
+    for (uint32_t i = 0; i < count; i++) {
+        scene_surface surface, coarse, again;
+        surface_host host;
+        vsf_mesh mesh;
+        double spacing;
+        assert_non_null(scene_surface_help(names[i]));
+        assert_true(scene_surface_make(names[i], 0, &surface));
+        mesh = mesh_of(&surface, &host);
+        assert_int_equal(host.warnings, 0);
+        assert_int_equal(mesh.info.open_edges, 0);
+        assert_int_equal(mesh.info.parts, 1);
+        assert_int_equal(mesh.info.turned, 0); /* outward as it comes */
+        assert_int_equal(mesh.vertex_count + mesh.triangle_count - mesh.info.edges,
+                         2); /* a ball's */
+        assert_true(mesh.triangle_count > 30000 && mesh.triangle_count < 120000);
+        spacing = mesh.info.mean_edge;
+        for (uint32_t v = 0; v < mesh.vertex_count; v++) {
+            double p[3] = {(double)mesh.positions[3 * v], (double)mesh.positions[3 * v + 1],
+                           (double)mesh.positions[3 * v + 2]};
+            assert_true(fabs(scene_surface_distance(names[i], p)) < 0.3 * spacing);
+        }
+        printf("%s: %u triangles, %.0f mm^2, %.0f mm^3\n", names[i], mesh.triangle_count,
+               mesh.info.area, mesh.info.volume);
+        assert_true(scene_surface_make(names[i], 2 * spacing, &coarse));
+        assert_true(scene_surface_make(names[i], 2 * spacing, &again)); /* the same bits */
+        assert_true(coarse.triangle_count < surface.triangle_count / 2);
+        assert_memory_equal(again.positions, coarse.positions, 12 * coarse.vertex_count);
+        scene_surface_free(&again);
+        scene_surface_free(&coarse);
+        scene_surface_free(&surface);
+        vsf_mesh_free(&mesh);
+    }
+}
+
+static void the_neck_is_concave_and_the_bleb_convex(void **state) {
+    /* what the shading must show: nearest vertices to the bleb's tip and to the neck */
+    static const float places[2][3] = {{-10.3f, -0.4f, 15.3f}, {-1.2f, 6.0f, 6.6f}};
+    scene_surface surface;
+    surface_host host;
+    vsf_mesh mesh;
+    vsf_smooth_desc smooth = {0, 0, 0, 1};
+    float *k;
+    (void)state;
+    assert_true(scene_surface_make("aneurysm", 0, &surface));
+    mesh = mesh_of(&surface, &host);
+    assert_int_equal(vsf_mesh_smooth(NULL, &mesh, &smooth), LAO_OK);
+    k = (float *)malloc(8 * mesh.vertex_count);
+    assert_int_equal(vsf_curvatures(NULL, &mesh, k, NULL), LAO_OK);
+    for (int i = 0; i < 2; i++) {
+        uint32_t best = 0;
+        double least = 1e9;
+        for (uint32_t v = 0; v < mesh.vertex_count; v++) {
+            double d = 0;
+            for (uint32_t j = 0; j < 3; j++)
+                d += pow((double)mesh.positions[3 * v + j] - (double)places[i][j], 2);
+            if (d < least) {
+                least = d;
+                best = v;
+            }
+        }
+        printf("place %d: %.2f mm away, curvatures %.2f and %.2f\n", i, sqrt(least),
+               (double)k[2 * best], (double)k[2 * best + 1]);
+        assert_true(k[2 * best] > 0.1f);
+        assert_true(i == 0 ? k[2 * best + 1] > 0.1f : k[2 * best + 1] < -0.1f);
+    }
+    free(k);
+    vsf_mesh_free(&mesh);
+    scene_surface_free(&surface);
+}
+
+static void flow_stays_inside_the_aorta(void **state) {
+    scene_lines lines;
+    (void)state;
+    assert_true(scene_make("flow", 300, 1, &lines));
+    assert_true(lines.point_count > 1000);
+    for (uint32_t i = 0; i < lines.point_count; i++) {
+        double p[3] = {(double)lines.points[3 * i], (double)lines.points[3 * i + 1],
+                       (double)lines.points[3 * i + 2]};
+        assert_true(scene_surface_distance("aorta", p) < 1e-3);
+    }
+    scene_free(&lines);
+}
+
+static void refuses(void **state) {
+    scene_surface surface;
+    (void)state;
+    memset(&surface, 7, sizeof surface);
+    assert_false(scene_surface_make("nothing", 0, &surface));
+    assert_false(scene_surface_make("liver", -1, &surface));
+    assert_false(scene_surface_make("liver", 1e-6, &surface));
+    assert_false(scene_surface_make("liver", (double)NAN, &surface));
+    for (size_t i = 0; i < sizeof surface; i++)
+        assert_int_equal(((unsigned char *)&surface)[i], 7);
+    assert_null(scene_surface_help("nothing"));
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(surfaces_are_whole),
+        cmocka_unit_test(the_neck_is_concave_and_the_bleb_convex),
+        cmocka_unit_test(flow_stays_inside_the_aorta),
+        cmocka_unit_test(refuses),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
