@@ -189,15 +189,25 @@ static void sign_row(const sampling *s, const uint32_t *triangles, uint32_t coun
     }
 }
 
+/* Distances of a row. Far from the mesh, where a cut only needs a lower bound, a sample takes that
+ * of an earlier one less the way from it. */
+static void measure_row(const sampling *s, uint32_t y, uint32_t z) {
+    uint32_t width = (uint32_t)s->shape.b.x, from = 0;
+    float *row = s->samples + width * (y + (size_t)(uint32_t)s->shape.b.y * z);
+    for (uint32_t x = 0; x < width; x++) {
+        float way = (float)(x - from) * s->shape.a.w;
+        bool far = x > 0 && row[from] - way > 3 * s->shape.a.w && way < 0.5f * row[from];
+        row[x] = far ? row[from] - way : sdv_target_point(s->target, sample_at(s, x, y, z));
+        from = far ? from : x;
+    }
+}
+
 /* Triangles that reach into a layer; then its rows. */
 static void sample_mesh(void *user, uint32_t z) {
     sampling *s = user;
-    uint32_t width = (uint32_t)s->shape.b.x, height = (uint32_t)s->shape.b.y;
-    for (uint32_t y = 0; y < height; y++) {
-        for (uint32_t x = 0; x < width; x++)
-            s->samples[x + width * (y + (size_t)height * z)] =
-                sdv_target_point(s->target, sample_at(s, x, y, z));
-    }
+    uint32_t height = (uint32_t)s->shape.b.y;
+    for (uint32_t y = 0; y < height; y++)
+        measure_row(s, y, z);
     float place = sample_at(s, 0, 0, z).z;
     uint32_t *near = malloc(((size_t)s->mesh->triangle_count + 1) * sizeof *near), count = 0;
     for (uint32_t i = 0; near && i < s->mesh->triangle_count; i++) {
