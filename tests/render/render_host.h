@@ -13,7 +13,7 @@
 
 #include <cmocka.h>
 
-enum { RENDER_MOST_IMAGES = 64, RENDER_MOST_SETS = 4 };
+enum { RENDER_MOST_IMAGES = 256, RENDER_MOST_SETS = 4 };
 
 /* ---- devices ---------------------------------------------------------------------------- */
 
