@@ -72,7 +72,7 @@ spirv() {
     glslangValidator -V --target-env vulkan1.2 -g0 -o "$work/$1.$3.spv" "$work/$1.$3" >"$work/log" ||
         { cat "$work/log" >&2; die "shaders/$1.glsl does not compile as $2"; }
     # what the prologue holds and the shader does not call; the rest stays as it is
-    spirv-opt --target-env=vulkan1.2 --eliminate-dead-functions --eliminate-dead-const --compact-ids -o "$work/$1.$3.spv" "$work/$1.$3.spv" ||
+    spirv-opt --target-env=vulkan1.2 --eliminate-dead-functions --eliminate-dead-const -o "$work/$1.$3.spv" "$work/$1.$3.spv" ||
         die "spirv-opt refuses shaders/$1.glsl as $2"
     od -An -v -tu4 -w64 "$work/$1.$3.spv" | sed 's/^ *//; s/  */,/g; s/$/,/' >"$work/$1.$3.words"
 }

@@ -79,6 +79,8 @@ enum render_target { RENDER_NO_TARGET, RENDER_TARGET_RGBA8, RENDER_TARGET_RGBA32
 typedef struct render_shot {
     uint32_t width, height;
     lao_camera camera;
+    const lao_camera *before; /* (Optional) frames drawn before in the same view */
+    uint32_t before_count;
     const render_lines *lines[RENDER_MOST_SETS]; /* NULL: none */
     const lao_settings *settings[RENDER_MOST_SETS];
     const lao_object_desc *objects[RENDER_MOST_SETS]; /* NULL: none */
