@@ -1264,10 +1264,9 @@ LAO_FN lao_v3 sdv_shade(lao_v3 color, lao_v3 n, lao_v3 l, float ambient, float d
 
 /* ---- the surface of the screen: vessels and what fills the void behind them (L19 3.4 with METHODS
    6.1) */
-#define SDV_BACKGROUND_EXPONENT 25   /* k */
-#define SDV_BACKGROUND_INERTIA 0.01f /* w_B: weight of the last frame's depth */
-#define SDV_BACKGROUND_PRESENCE                                                                    \
-    0.001f /* weight of void pixels beside covered ones in coarser levels */
+#define SDV_BACKGROUND_EXPONENT 25     /* k */
+#define SDV_BACKGROUND_INERTIA 0.01f   /* w_B: weight of the last frame's depth */
+#define SDV_BACKGROUND_PRESENCE 0.001f /* weight of the void beside vessels in coarser levels */
 /* Whether a traced pixel shows a surface: a cone's or a cut's. */
 LAO_FN bool sdv_is_covered(float cone) {
     return cone > -0.5f || cone < -1.5f;
