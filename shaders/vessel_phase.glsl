@@ -23,13 +23,16 @@ float first_level() {
 void main() {
     ivec2 pixel = LAO_PIXEL;
     vec4 r = texelFetch(recalled, pixel, 0);
-    float first = first_level();
     out_phase = vec4(0.0);
-    if (r.w > 0.0 && lao_step.size.z >= first) {
-        out_phase = vec4(r.xy, lao_step.size.z > first ? 1.0 : 0.0, 0.0);
+    if (lao_constant_variant == 1) {
+        if (r.w > 0.0) {
+            out_phase = vec4(r.xy, 1.0, 0.0);
+        }
         return;
     }
-    if (lao_constant_variant == 1) {
+    float first = first_level();
+    if (r.w > 0.0 && lao_step.size.z >= first) {
+        out_phase = vec4(r.xy, lao_step.size.z > first ? 1.0 : 0.0, 0.0);
         return;
     }
     lao_v3 p = texelFetch(place, pixel, 0).xyz;
