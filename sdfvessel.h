@@ -1408,12 +1408,20 @@ LAO_FN lao_v3 sdv_lift(lao_m4 world, lao_v3 axis, lao_v3 n, lao_v3 otherwise) {
     }
     return z;
 }
-/* 1 / |p - q|^2, at most that of a thousandth of a pixel. */
-LAO_FN float sdv_nearness(lao_v3 p, lao_v3 q, float pixel) {
+/* 1 / |p - q|^2, at most that of `least` mm. */
+LAO_FN float sdv_nearness(lao_v3 p, lao_v3 q, float least) {
     lao_v3 apart = lao_v3_sub(p, q);
-    LAO_EXACT float least = 1.0e-6f * pixel * pixel;
-    LAO_EXACT float r = 1.0f / lao_max(lao_max(lao_v3_dot(apart, apart), least), 1.0e-30f);
+    LAO_EXACT float least2 = lao_max(least * least, 1.0e-30f);
+    LAO_EXACT float r = 1.0f / lao_max(lao_v3_dot(apart, apart), least2);
     return r;
+}
+/* The same between a pixel of a level and its parents: whatever lies no further than parents lie
+   apart on the screen counts alike, so that the stencil alone rules on a smooth surface (its
+   weights times 1 / |p - q|^2 of L19 would be blocks) and only what lies behind or in front counts
+   less. pixel: mm across one of the finest level. */
+LAO_FN float sdv_parent_nearness(lao_v3 p, lao_v3 q, float pixel, float level) {
+    LAO_EXACT float least = 2.2f * pixel * lao_exp2(level);
+    return sdv_nearness(p, q, least);
 }
 
 /* ---- parameterization: two phases of every pixel, radians (L19 3.6 with METHODS 7.3) */
@@ -1484,7 +1492,7 @@ LAO_FN lao_v2 sdv_phases_mean(sdv_phases s, lao_v2 otherwise) {
 }
 /* Weight of a neighbour: near ones and vessels count (L19 Eq. 10), void alone counts alike. */
 LAO_FN float sdv_phase_weight(lao_v3 p, lao_v3 q, float covered, float stencil, float pixel) {
-    LAO_EXACT float h = stencil * lao_max(covered, 1.0e-6f) * sdv_nearness(p, q, pixel);
+    LAO_EXACT float h = stencil * lao_max(covered, 1.0e-6f) * sdv_nearness(p, q, 0.001f * pixel);
     return h;
 }
 /* One neighbour's part: place and share of vessels (w), both directions, phases. */
@@ -1620,13 +1628,15 @@ LAO_FN float sdv_dot_ink(float a, float b, float dark, float wide_a, float wide_
     LAO_EXACT float radius = lao_sqrt(lao_max(squared, least));
     LAO_EXACT float share = lao_min(dark / (1.04719755f * w * w), 1.0f);
     LAO_EXACT float ink = lao_clamp01(0.5f + (radius - r) / w) * (squared < least ? share : 1.0f);
-    LAO_EXACT float blur = lao_clamp01(4.0f * w - 1.0f); /* cells that are no more seen */
+    LAO_EXACT float blur = lao_clamp01(5.0f * mean - 0.75f); /* cells too small to be seen */
     LAO_EXACT float result = ink + blur * (dark - ink);
     return result;
 }
-/* Dots; from where they would touch on, white ones between them. a, b in [-1/2, 1/2]. */
+/* Dots; where they would touch, white ones between them. a, b in [-1/2, 1/2]. */
 LAO_FN float sdv_stipple_ink(float a, float b, float dark, float wide_a, float wide_b) {
-    if (dark <= 0.78f) {
+    LAO_EXACT float widest = 0.5f - 0.25f * (wide_a + wide_b);
+    LAO_EXACT float touch = 3.14159265f * widest * widest;
+    if (dark <= 0.5f || (dark <= touch && widest > 0.0f)) {
         return sdv_dot_ink(a, b, dark, wide_a, wide_b);
     }
     float x = a < 0.0f ? a + 0.5f : a - 0.5f;

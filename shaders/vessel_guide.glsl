@@ -31,7 +31,7 @@ void main() {
             if (parent.x >= 0 && parent.y >= 0 && parent.x < size.x && parent.y < size.y) {
                 vec4 g = texelFetch(spread, parent, 0);
                 LAO_EXACT float h = sdv_push_share(1, i & 1) * sdv_push_share(1, i >> 1) *
-                                    sdv_nearness(p, texelFetch(parent_place, parent, 0).xyz, mm);
+                                    sdv_parent_nearness(p, texelFetch(parent_place, parent, 0).xyz, mm, lao_step.size.z);
                 m = sdv_mix_add(m, vec4(g.xyz, 0.0), g.w, h);
             }
         }

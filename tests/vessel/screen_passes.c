@@ -282,7 +282,7 @@ static void spread(screen *s, uint32_t l, uint32_t k) {
     for (int i = 0; i < 4; i++) {
         long at = parent(&t, i);
         if (at >= 0) {
-            float h = share(i) * sdv_nearness(p, xyz(s->place[l + 1][at]), mm);
+            float h = share(i) * sdv_parent_nearness(p, xyz(s->place[l + 1][at]), mm, (float)l);
             m = sdv_mix_add(m, with(xyz(s->spread[l + 1][at]), 0), s->spread[l + 1][at].w, h);
         }
     }
