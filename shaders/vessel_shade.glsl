@@ -66,7 +66,7 @@ vec4 void_color(ivec2 pixel, lao_v3 direction) {
     float facing = -lao_v3_dot(n, direction);
     if (lao_constant_void_style == SDV_VOID_CHROMADEPTH) {
         LAO_EXACT float depth = (sdv_depth_of(lao_frame.view, p) - lao_frame.depth.x) * lao_frame.depth.y;
-        LAO_EXACT float light = 0.35 + 0.65 * lao_max(facing, 0.0);
+        LAO_EXACT float light = 0.7 + 0.3 * lao_max(facing, 0.0);
         if (lao_setting_isolines > 0.5) {
             lao_v3 back = lao_v3_unit(lao_frame.world.z.xyz, lao_v3_make(0.0, 0.0, 1.0));
             LAO_EXACT float gap = 1.0 / (lao_setting_isolines * lao_frame.depth.y);
@@ -77,7 +77,7 @@ vec4 void_color(ivec2 pixel, lao_v3 direction) {
         }
         return vec4(lao_v3_scale(sdv_chromadepth(depth), light), 1.0);
     }
-    float tone = sdv_style_tone(facing, 0.0, 1.0, 1.0);
+    float tone = sdv_style_tone(facing, 0.5, 0.5, 1.0); /* half black where the sheet is seen edge-on */
     int style = lao_constant_void_style == SDV_VOID_STIPPLE ? SDV_STYLE_STIPPLE : SDV_STYLE_HATCH;
     LAO_EXACT float white = 1.0 - ink(pixel, style, n, p, direction, 1.0 - tone);
     return vec4(white, white, white, 1.0);
