@@ -143,6 +143,8 @@ static void sheets(void **state) {
     assert_near(
         sdv_sheet_normal(lao_v3_make(1, 0, 1), lao_v3_make(0, 1, 0), lao_v3_make(0, 0, 1)).x,
         -sqrt(0.5), 1e-6);
+    assert_near(
+        sdv_sheet_normal(lao_v3_make(0, 1, 0), lao_v3_make(1, 0, 0), lao_v3_make(0, 0, 1)).z, 1, 0);
     /* the smaller step wins, and a missing neighbour never does */
     assert_near(
         sdv_sheet_step(lao_v3_make(-1, 0, 9), lao_v3_make(0, 0, 0), lao_v3_make(1, 0, 2), 9, 0, 2)
@@ -299,6 +301,15 @@ static void signs(void **state) {
         assert_near(p.x, a * k * at, 1e-5);
         assert_near(p.y, 1, 0);
     }
+    { /* opposite predictions leave what was there, for u and for v alone */
+        lao_v2 zero = {0, 1}, pi = {3.14159265f, 1}, one = {1, 1}, was = {0.25f, 0.5f}, r;
+        sdv_phases sum = sdv_phases_start(lao_v4_make(0, 0, 0, 0));
+        sum = sdv_phases_add(sum, zero, one, 2);
+        sum = sdv_phases_add(sum, pi, one, 2);
+        r = sdv_phases_mean(sum, was);
+        assert_true(r.x == was.x);
+        assert_near(r.y, 1, 1e-5);
+    }
     for (int i = -400; i <= 400; i++) {
         float t = (float)i * 0.05f, w = sdv_phase_wrap(t);
         assert_near(turn_of((double)t - (double)w), 0, 1e-5);
@@ -448,6 +459,7 @@ static void coherence(void **state) {
 /* What came into view is not what was there before. */
 static void disocclusion(void **state) {
     lao_v3 p = {0, 0, 0}, n = {0, 0, 1};
+    lao_v2 phase = {0.3f, 0.4f};
     lao_m4 turned;
     (void)state;
     assert_true(sdv_same_surface(p, n, lao_v3_make(0.5f, 0.5f, 0), 1));
@@ -460,6 +472,17 @@ static void disocclusion(void **state) {
     assert_true(sdv_recycle_level(-1, 64, false) == 2 && sdv_recycle_level(-1, 1, false) == 1);
     assert_true(sdv_recycle_level(-1, 128, false) == 3 && sdv_recycle_level(3, 16, false) == 3);
     assert_true(sdv_recycle_level(3, 16, true) == 0);
+    /* what is recalled turns with its guide and moves with its pixel */
+    phase = sdv_phase_recall(lao_v3_make(1, 0, 0), lao_v3_make(0, 1, 0),
+                             lao_v3_make(-0.5f, 0.5f, 0), phase, lao_v3_make(1, 2, 0), 0.5f);
+    assert_near(phase.x, -0.3 + 0.5, 1e-6);
+    assert_near(phase.y, -0.4 + 1, 1e-6);
+    /* the void stays by its pixel, a vessel by its place, neither with another period */
+    assert_true(sdv_phase_stays(lao_v4_make(1, 2, 3, -4), lao_v4_make(9, 9, 9, -4)));
+    assert_true(sdv_phase_stays(lao_v4_make(1, 2, 3, 4), lao_v4_make(1, 2, 3, 4)));
+    assert_false(sdv_phase_stays(lao_v4_make(1, 2, 3, 4), lao_v4_make(1, 2, 4, 4)));
+    assert_false(sdv_phase_stays(lao_v4_make(1, 2, 3, 4), lao_v4_make(1, 2, 3, -4)));
+    assert_false(sdv_phase_stays(lao_v4_make(1, 2, 3, 4), lao_v4_make(1, 2, 3, 5)));
     /* the last camera's axes are the rows of its view */
     memset(&turned, 0, sizeof turned);
     turned.x = lao_v4_make(0, 1, 0, 0); /* world x is its up */
