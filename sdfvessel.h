@@ -1547,6 +1547,12 @@ LAO_FN bool sdv_same_surface(lao_v3 p, lao_v3 n, lao_v3 q, float pixel) {
     LAO_EXACT float most = 64.0f * pixel * pixel;
     return off <= 2.0f * pixel && lao_v3_dot(apart, apart) <= most;
 }
+/* What the surface image says of a covered pixel (negative: of the void): the period, which a set
+   of the frame tells from other sets by a power of two. */
+LAO_FN float sdv_surface_mark(float period, float set) {
+    LAO_EXACT float r = period * lao_exp2(12.0f * set);
+    return r;
+}
 /* A guide of the screen as the last frame's camera saw it, in the world; for its sign only. */
 LAO_FN lao_v3 sdv_guide_world(lao_m4 view, float x, float y) {
     lao_v3 right = lao_v3_make(view.x.x, view.y.x, view.z.x);
@@ -1572,8 +1578,8 @@ LAO_FN lao_v2 sdv_phase_recall(lao_v3 along, lao_v3 across, lao_v3 before, lao_v
     LAO_EXACT float v = s * phase.y + frequency * lao_v3_dot(across, apart);
     return lao_v2_make(sdv_phase_wrap(u), sdv_phase_wrap(v));
 }
-/* What the surface image says of a pixel: the period, negative where it is void. A pixel that has
-   not changed, seen by a camera that has not moved, keeps its phases. */
+/* now, before: of the surface image. A pixel that has not changed, seen by a camera that has not
+   moved, keeps its phases. */
 LAO_FN bool sdv_phase_stays(lao_v4 now, lao_v4 before) {
     return now.w == before.w &&
            (now.w < 0.0f || (now.x == before.x && now.y == before.y && now.z == before.z));

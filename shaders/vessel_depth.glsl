@@ -14,7 +14,7 @@ void main() {
         out_depth = vec4(sdv_depth_of(lao_frame.view, hit.xyz), 1.0, 0.0, 1.0);
     } else if (lao_frame.history.x > 0.5) {
         vec4 before = texelFetch(surface, pixel, 0);
-        if (before.w != 0.0) {
+        if (lao_abs(before.w) == sdv_surface_mark(lao_setting_ssp_period, lao_step.source.z)) {
             out_depth = vec4(sdv_depth_of(lao_frame.previous_view, before.xyz), 0.0, 0.0, SDV_BACKGROUND_INERTIA);
         }
     }

@@ -6,7 +6,7 @@ LAO_TEX(3, sampler2D, normal)
 LAO_TEX(4, samplerBuffer, cones)
 LAO_CONSTANT(0, lao_constant_guide)
 
-LAO_OUT(0, vec4, out_surface) /* world, mm; the period, negative in the void, 0 in an empty picture */
+LAO_OUT(0, vec4, out_surface) /* world, mm; sdv_surface_mark, 0 in an empty picture */
 LAO_OUT(1, vec4, out_normal)  /* world, towards the viewer */
 LAO_OUT(2, vec4, out_place)   /* as out_surface; covered: 1 */
 LAO_OUT(3, vec4, out_facing)  /* as out_normal */
@@ -59,7 +59,7 @@ void main() {
     vec4 z = texelFetch(filled, pixel, 0);
     lao_v3 p = hit.xyz;
     lao_v3 n = texelFetch(normal, pixel, 0).xyz;
-    float mark = lao_setting_ssp_period;
+    float mark = sdv_surface_mark(lao_setting_ssp_period, lao_step.source.z);
     float covered = 1.0;
     if (!sdv_is_covered(hit.w)) {
         lao_v2 slope = lao_pixel_slope(lao_frame.ray, float(pixel.x) + 0.5, float(pixel.y) + 0.5);

@@ -141,7 +141,8 @@ static void depth_zero(screen *s, const lao_v4 *position) {
         *d = zero();
         if (sdv_is_covered(position[k].w))
             *d = lao_v4_make(sdv_depth_of(s->frame.view, xyz(position[k])), 1, 0, 1);
-        else if (s->frame.history.x > 0.5f && before.w != 0)
+        else if (s->frame.history.x > 0.5f &&
+                 lao_abs(before.w) == sdv_surface_mark(s->period, s->set))
             *d = lao_v4_make(sdv_depth_of(s->frame.previous_view, xyz(before)), 0, 0,
                              SDV_BACKGROUND_INERTIA);
     }
@@ -216,7 +217,7 @@ static void surface_zero(screen *s, const lao_v4 *position, const lao_v4 *normal
         texel t = texel_make(s, 0, k);
         lao_v4 hit = position[k], z = s->filled[0][k];
         lao_v3 p = xyz(hit), n = xyz(normal[k]);
-        float mark = s->period, covered = 1;
+        float mark = sdv_surface_mark(s->period, s->set), covered = 1;
         if (!sdv_is_covered(hit.w)) {
             lao_v2 slope = lao_pixel_slope(s->frame.ray, (float)t.x + 0.5f, (float)t.y + 0.5f);
             lao_v3 d = lao_ray_direction(s->frame.world, slope, s->frame.depth.w);

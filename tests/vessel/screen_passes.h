@@ -12,7 +12,7 @@ typedef lao_v4 *screen_pyramid[SCREEN_LEVELS];
 typedef struct screen {
     uint32_t width, height, levels;
     lao_frame_uniforms frame;
-    float threshold, period, recycle, converge;
+    float threshold, period, recycle, converge, set;
     int guide, sweeps;
     const lao_v4 *cones; /* two each; for SDV_GUIDE_AXIS */
     screen_pyramid depth, filled, place, facing, tensor, spread, along, across, recalled, phase,

@@ -244,6 +244,34 @@ static void frames(void **state) {
     subject_free(&tree);
 }
 
+/* Two trees in a view: the images are the last one's, and it recalls nothing of the other's. */
+static void two_trees(void **state) {
+    subject a, b;
+    scene s;
+    screen c;
+    lao_camera cameras[2];
+    (void)state;
+    subject_make(&a, 60, 1);
+    subject_make(&b, 60, 9);
+    scene_make(&s, &a);
+    s.shot.set_count = 2;
+    s.shot.objects[1] = &b.object.desc;
+    s.shot.settings[1] = &s.lines;
+    s.shot.module_settings[1] = s.settings;
+    s.vessel.void_style = SDV_VOID_HATCH;
+    cameras[0] = cameras[1] = s.shot.camera;
+    screen_of(&s, &b, &c);
+    c.set = 1;
+    check(&s, cameras, 2, &c);
+    for (uint32_t i = 0; i < WIDTH * HEIGHT; i++) {
+        assert_true(fabsf(c.surface[i].w) == 1.5f * 4096);
+        assert_true(c.surface[i].w < 0 || c.recalled[0][i].w == 1);
+    }
+    screen_free(&c);
+    subject_free(&a);
+    subject_free(&b);
+}
+
 static int open_all(void **state) {
     (void)state;
     modules[0] = sdv_module();
@@ -265,6 +293,7 @@ int main(void) {
         cmocka_unit_test(still_frames),
         cmocka_unit_test(empty_picture),
         cmocka_unit_test(frames),
+        cmocka_unit_test(two_trees),
     };
     return cmocka_run_group_tests(tests, open_all, close_all);
 }
