@@ -3,7 +3,7 @@
 # dist/lineao_all.h (everything in one file), and the generated parts of README.md and docs/algorithm.md. The same inputs give the same bytes: no clock, no locale, no paths.
 #   ./amalgamate.sh            write both
 #   ./amalgamate.sh --check    prove that the committed lineao_shaders.h is current and that dist/ compiles
-# Needs cc, awk, glslangValidator.
+# Needs cc, awk, od, glslangValidator, spirv-opt.
 # shellcheck disable=SC2086 # lists are split into words on purpose
 set -eu
 LC_ALL=C
@@ -13,7 +13,7 @@ cd "$(dirname "$0")"
 # Shaders by module; a module's header is where its shared text is.
 MODULES="lines vessel"
 lines_shaders="fullscreen import_depth export_depth cover lines lines_rim lines_halo level_zero level_one level_up occlusion smooth shade resolve present"
-vessel_shaders="vessel_trace vessel_carve vessel_shade"
+vessel_shaders="vessel_trace vessel_carve vessel_depth vessel_pull vessel_fill vessel_surface vessel_gather vessel_guide vessel_recall vessel_recall_up vessel_phase vessel_sweep vessel_uv vessel_shade"
 vessel_header="sdfvessel.h"
 lines_header="" # lineao.h's text stands in front of all
 
@@ -25,6 +25,7 @@ die() {
 }
 
 command -v glslangValidator >/dev/null || die "glslangValidator is missing (Debian package glslang-tools)"
+command -v spirv-opt >/dev/null || die "spirv-opt is missing (Debian package spirv-tools)"
 
 # Comments and blank lines go, indentation too: shorter text, the same tokens.
 strip() {
@@ -68,9 +69,12 @@ spirv() {
         printf '#version 450\n#define LAO_GLSL 1\n#define LAO_PRECISE 1\n#define LAO_%s 1\n' "$2"
         cat "$work/prologue" "$work/$module.prologue" "$work/$1.body"
     } >"$work/$1.$3"
-    glslangValidator -V --target-env vulkan1.2 -g0 -x -o "$work/$1.$3.x" "$work/$1.$3" >"$work/log" ||
+    glslangValidator -V --target-env vulkan1.2 -g0 -o "$work/$1.$3.spv" "$work/$1.$3" >"$work/log" ||
         { cat "$work/log" >&2; die "shaders/$1.glsl does not compile as $2"; }
-    sed 's/0x0*\([0-9a-f]\)/0x\1/g' "$work/$1.$3.x" >"$work/$1.$3.words"
+    # what the prologue holds and the shader does not call; the rest stays as it is
+    spirv-opt --target-env=vulkan1.2 --eliminate-dead-functions --eliminate-local-single-block --eliminate-local-single-store --eliminate-dead-code-aggressive --eliminate-dead-const -o "$work/$1.$3.spv" "$work/$1.$3.spv" ||
+        die "spirv-opt refuses shaders/$1.glsl as $2"
+    od -An -v -tu4 -w64 "$work/$1.$3.spv" | sed 's/^ *//; s/  */,/g; s/$/,/' >"$work/$1.$3.words"
 }
 
 names() { # second and further arguments of a macro: names MACRO file

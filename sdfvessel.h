@@ -472,7 +472,24 @@ SDV_API lao_result sdv_pull_push(const sdv_host *host, const sdv_pull_push_desc 
     X(surface_ambient, FLOAT, 0, 1, 0.25f, 0, "", "", "ambient part of a surface's illumination")  \
     X(surface_diffuse, FLOAT, 0, 2, 0.7f, 0, "", "", "diffuse part of a surface's illumination")   \
     X(surface_specular, FLOAT, 0, 2, 0.2f, 0, "", "", "specular part of a surface's illumination") \
-    X(surface_shininess, INT, 1, 1000, 40, 1, "", "", "Phong exponent of a surface")
+    X(surface_shininess, INT, 1, 1000, 40, 1, "", "", "Phong exponent of a surface")               \
+    X(parameterization, ENUM, 0, 2, 0, 1, "", "off|background|on",                                 \
+      "the surface that fills the void; and texture coordinates (u, v) for every pixel")           \
+    X(guide, ENUM, 0, 1, 0, 1, "", "contour|axis",                                                 \
+      "what u follows: the normals of contours, or the axes of vessels")                           \
+    X(guide_threshold, FLOAT, 0, 1, 0.2f, 0, "", "",                                               \
+      "step of depth that is a contour, as part of the scene's diameter (t of L19)")               \
+    X(ssp_period, FLOAT, 0.001f, 1000, 4, 0, "mm", "", "period of u and v on the surface")         \
+    X(ssp_sweeps, INT, 0, 64, 4, 1, "", "", "optimisations per level of the pyramid (r of L19)")   \
+    X(ssp_recycle, INT, -1, 15, -1, 0, "", "",                                                     \
+      "coarsest level that a frame renews (l_p of L19); -1: 2^level <= period / 16 pixels")        \
+    X(ssp_converge, BOOL, 0, 1, 0, 0, "", "", "optimise on where nothing changes")                 \
+    X(style, ENUM, 0, 5, 0, 1, "", "plain|stipple|hatch|crosshatch|layered|shadow",                \
+      "ink instead of shades (shadow: of depth shadows), where the parameterization is on")        \
+    X(void_style, ENUM, 0, 3, 0, 1, "", "plain|chromadepth|stipple|hatch",                         \
+      "what is drawn behind vessels, where the parameterization is on (chromadepth: or "           \
+      "background)")                                                                               \
+    X(isolines, INT, 0, 1000, 30, 0, "", "", "lines of depth of the chromadepth; 0: none")
 
 /* What a vessel tree looks like; as lao_settings: zero is the default unless its bit is set. */
 typedef struct sdv_settings {
@@ -1333,6 +1350,425 @@ LAO_FN lao_v3 sdv_shade(lao_v3 color, lao_v3 n, lao_v3 l, float ambient, float d
     LAO_EXACT float y = color.y * body + shine;
     LAO_EXACT float z = color.z * body + shine;
     return lao_v3_make(lao_clamp01(x), lao_clamp01(y), lao_clamp01(z));
+}
+
+/* ---- the surface of the screen: vessels and what fills the void behind them (L19 3.4 with METHODS
+   6.1) */
+#define SDV_BACKGROUND_EXPONENT 25     /* k */
+#define SDV_BACKGROUND_INERTIA 0.01f   /* w_B: weight of the last frame's depth */
+#define SDV_BACKGROUND_PRESENCE 0.001f /* weight of the void beside vessels in coarser levels */
+/* Whether a traced pixel shows a surface: a cone's or a cut's. */
+LAO_FN bool sdv_is_covered(float cone) {
+    return cone > -0.5f || cone < -1.5f;
+}
+/* Depth where a picture has nothing at all: beyond the far end by the scene's diameter. */
+LAO_FN float sdv_empty_depth(lao_v4 depth) {
+    LAO_EXACT float z = depth.x + 2.0f * depth.z;
+    return z;
+}
+/* Depth of a place of the world before the camera, mm. */
+LAO_FN float sdv_depth_of(lao_m4 view, lao_v3 p) {
+    lao_v3 q = lao_transform(view, p);
+    return -q.z;
+}
+/* The place of the world at that depth of a pixel. */
+LAO_FN lao_v3 sdv_depth_place(lao_m4 world, lao_v2 slope, float depth, float orthographic) {
+    float s = orthographic > 0.5f ? 1.0f : depth;
+    LAO_EXACT float x = slope.x * s;
+    LAO_EXACT float y = slope.y * s;
+    return lao_transform(world, lao_v3_make(x, y, -depth));
+}
+/* The linear part of a transformation. */
+LAO_FN lao_v3 sdv_turned(lao_m4 m, lao_v3 v) {
+    LAO_EXACT float x = m.x.x * v.x + m.y.x * v.y + m.z.x * v.z;
+    LAO_EXACT float y = m.x.y * v.x + m.y.y * v.y + m.z.y * v.z;
+    LAO_EXACT float z = m.x.z * v.x + m.y.z * v.y + m.z.z * v.z;
+    return lao_v3_make(x, y, z);
+}
+/* mm across a pixel at that depth. */
+LAO_FN float sdv_pixel_size(lao_v4 ray, float depth, float orthographic) {
+    LAO_EXACT float r = lao_abs(ray.y) * (orthographic > 0.5f ? 1.0f : lao_abs(depth));
+    return r;
+}
+/* From pixel to pixel along an axis, on the side where depth changes less. */
+LAO_FN lao_v3 sdv_sheet_step(lao_v3 before, lao_v3 p, lao_v3 after, float depth_before, float depth,
+                             float depth_after) {
+    LAO_EXACT float a = lao_abs(depth - depth_before);
+    LAO_EXACT float b = lao_abs(depth_after - depth);
+    if (b <= a) {
+        return lao_v3_sub(after, p);
+    }
+    return lao_v3_sub(p, before);
+}
+/* Normal from two such steps, on the side of `towards` (unit). */
+LAO_FN lao_v3 sdv_sheet_normal(lao_v3 dx, lao_v3 dy, lao_v3 towards) {
+    lao_v3 zero = lao_v3_make(0.0f, 0.0f, 0.0f);
+    lao_v3 n = lao_v3_unit(lao_v3_cross(lao_v3_unit(dx, zero), lao_v3_unit(dy, zero)), towards);
+    if (lao_v3_dot(n, towards) < 0.0f) {
+        return lao_v3_scale(n, -1.0f);
+    }
+    return n;
+}
+
+/* ---- guiding field: directions without a sign (L19 3.5 with METHODS 7.1) */
+#define SDV_GUIDE_CONTOUR 0
+#define SDV_GUIDE_AXIS 1
+#define SDV_CONTOUR_WEIGHT 0.2f /* w_f */
+/* Gradient of depth over three rows of three pixels, bottom up: a step reads as its height, as part
+   of the scene's diameter. */
+LAO_FN lao_v2 sdv_sobel(lao_v3 below, lao_v3 at, lao_v3 above, float inverse_diameter) {
+    LAO_EXACT float x = 0.25f * inverse_diameter *
+                        ((below.z - below.x) + 2.0f * (at.z - at.x) + (above.z - above.x));
+    LAO_EXACT float y = 0.25f * inverse_diameter *
+                        ((above.x - below.x) + 2.0f * (above.y - below.y) + (above.z - below.z));
+    return lao_v2_make(x, y);
+}
+/* z z^T of a direction of the screen (xx, xy, yy) and its weight. */
+LAO_FN lao_v4 sdv_tensor(float x, float y, float weight) {
+    LAO_EXACT float xx = x * x;
+    LAO_EXACT float xy = x * y;
+    LAO_EXACT float yy = y * y;
+    return lao_v4_make(xx, xy, yy, weight);
+}
+/* Of a covered pixel with that depth gradient and normal (view space): the projected normal where
+   the step is higher than the threshold, else nothing. */
+LAO_FN lao_v4 sdv_contour_tensor(lao_v2 gradient, lao_v3 normal, float threshold) {
+    LAO_EXACT float rise = lao_sqrt(lao_v2_dot(gradient, gradient));
+    if (!(rise > threshold)) {
+        return lao_v4_make(0.0f, 0.0f, 0.0f, 0.0f);
+    }
+    LAO_EXACT float across = lao_sqrt(normal.x * normal.x + normal.y * normal.y);
+    if (across > 1.0e-6f) {
+        return sdv_tensor(normal.x / across, normal.y / across, SDV_CONTOUR_WEIGHT);
+    }
+    return sdv_tensor(-gradient.x / rise, -gradient.y / rise, SDV_CONTOUR_WEIGHT);
+}
+/* Of a vessel's axis (view space): certain where it is seen from the side, nothing end-on. */
+LAO_FN lao_v4 sdv_axis_tensor(lao_v3 axis) {
+    lao_v3 a = lao_v3_unit(axis, lao_v3_make(0.0f, 0.0f, 0.0f));
+    LAO_EXACT float across2 = a.x * a.x + a.y * a.y;
+    if (!(across2 > 1.0e-6f)) {
+        return lao_v4_make(0.0f, 0.0f, 0.0f, 0.0f);
+    }
+    LAO_EXACT float across = lao_sqrt(across2);
+    return sdv_tensor(a.x / across, a.y / across, across2);
+}
+/* First eigenvector (x >= 0), and 1; (0, 0) and 0 where no direction stands out. */
+LAO_FN lao_v3 sdv_tensor_axis(lao_v4 g) {
+    LAO_EXACT float difference = g.x - g.z;
+    LAO_EXACT float twice = 2.0f * g.y;
+    LAO_EXACT float spread = lao_sqrt(difference * difference + twice * twice);
+    LAO_EXACT float trace = g.x + g.z;
+    if (!(spread > 1.0e-6f * trace)) {
+        return lao_v3_make(0.0f, 0.0f, 0.0f);
+    }
+    LAO_EXACT float c = difference / spread; /* of the double angle */
+    LAO_EXACT float s = twice / spread;
+    if (c >= 0.0f) {
+        LAO_EXACT float x = lao_sqrt(0.5f + 0.5f * c);
+        LAO_EXACT float y = 0.5f * s / x;
+        return lao_v3_make(x, y, 1.0f);
+    }
+    LAO_EXACT float v = lao_sqrt(0.5f - 0.5f * c);
+    LAO_EXACT float u = 0.5f * lao_abs(s) / v;
+    return lao_v3_make(u, s < 0.0f ? -v : v, 1.0f);
+}
+/* What is left of v in the plane of normal n, unit; (0, 0, 0) where that is nothing. */
+LAO_FN lao_v3 sdv_tangent(lao_v3 v, lao_v3 n) {
+    lao_v3 rest = lao_v3_along(v, n, -lao_v3_dot(v, n));
+    if (!(lao_v3_dot(rest, rest) > 1.0e-12f)) {
+        return lao_v3_make(0.0f, 0.0f, 0.0f);
+    }
+    return lao_v3_unit(rest, lao_v3_make(0.0f, 0.0f, 0.0f));
+}
+/* A direction of the screen (of sdv_tensor_axis) in the tangent plane of normal n (METHODS 7.2);
+   else `otherwise` there, else any. */
+LAO_FN lao_v3 sdv_lift(lao_m4 world, lao_v3 axis, lao_v3 n, lao_v3 otherwise) {
+    lao_v3 right = lao_v3_make(world.x.x, world.x.y, world.x.z);
+    lao_v3 up = lao_v3_make(world.y.x, world.y.y, world.y.z);
+    lao_v3 z = sdv_tangent(lao_v3_along(lao_v3_scale(right, axis.x), up, axis.y), n);
+    if (!(lao_v3_dot(z, z) > 0.5f)) {
+        z = sdv_tangent(otherwise, n);
+    }
+    if (!(lao_v3_dot(z, z) > 0.5f)) {
+        z = sdv_tangent(right, n);
+    }
+    if (!(lao_v3_dot(z, z) > 0.5f)) {
+        z = sdv_tangent(up, n);
+    }
+    return z;
+}
+/* 1 / |p - q|^2, at most that of `least` mm. */
+LAO_FN float sdv_nearness(lao_v3 p, lao_v3 q, float least) {
+    lao_v3 apart = lao_v3_sub(p, q);
+    LAO_EXACT float least2 = lao_max(least * least, 1.0e-30f);
+    LAO_EXACT float r = 1.0f / lao_max(lao_v3_dot(apart, apart), least2);
+    return r;
+}
+/* The same between a pixel of a level and its parents: whatever lies no further than parents lie
+   apart on the screen counts alike, so that the stencil alone rules on a smooth surface (its
+   weights times 1 / |p - q|^2 of L19 would be blocks) and only what lies behind or in front counts
+   less. pixel: mm across one of the finest level. */
+LAO_FN float sdv_parent_nearness(lao_v3 p, lao_v3 q, float pixel, float level) {
+    LAO_EXACT float least = 2.2f * pixel * lao_exp2(level);
+    return sdv_nearness(p, q, least);
+}
+
+/* ---- parameterization: two phases of every pixel, radians (L19 3.6 with METHODS 7.3) */
+/* Phase of a pixel as a neighbour predicts it (x) and how much that counts (y): z, z_other: their
+   directions, of either sign; apart: from the neighbour to the pixel, mm; frequency: radians per
+   mm. */
+LAO_FN lao_v2 sdv_phase_from(lao_v3 z, lao_v3 z_other, float phase, lao_v3 apart, float frequency) {
+    LAO_EXACT float alike = lao_v3_dot(z, z_other);
+    float s = alike < 0.0f ? -1.0f : 1.0f;
+    lao_v3 both = lao_v3_along(z, z_other, s);
+    LAO_EXACT float predicted = s * phase + 0.5f * frequency * lao_v3_dot(both, apart);
+    return lao_v2_make(predicted, lao_abs(alike));
+}
+/* The same phase in [-pi, pi]; untouched where it is there already. */
+LAO_FN float sdv_phase_wrap(float phase) {
+    if (lao_abs(phase) <= 3.14159265f) {
+        return phase;
+    }
+    LAO_EXACT float turns = phase / LAO_TURN;
+    LAO_EXACT float r = (turns - lao_floor(turns + 0.5f)) * LAO_TURN;
+    return lao_min(lao_max(r, -3.14159265f), 3.14159265f);
+}
+/* What neighbours predict together: sums of (cos, sin) and of weights for u and for v. */
+struct sdv_phases {
+    lao_v4 sum;   /* cos, sin of u, of v */
+    lao_v2 share; /* of u, of v */
+};
+#ifndef LAO_GLSL
+typedef struct sdv_phases sdv_phases;
+#endif
+LAO_FN sdv_phases sdv_phases_start(lao_v4 zero) {
+    sdv_phases s;
+    s.sum = zero;
+    s.share = lao_v2_make(0.0f, 0.0f);
+    return s;
+}
+/* u, v: from sdv_phase_from; h: weight of the neighbour but for its direction. */
+LAO_FN sdv_phases sdv_phases_add(sdv_phases s, lao_v2 u, lao_v2 v, float h) {
+    sdv_phases r = s;
+    LAO_EXACT float hu = h * u.y;
+    LAO_EXACT float hv = h * v.y;
+    LAO_EXACT float tu = u.x / LAO_TURN;
+    LAO_EXACT float tv = v.x / LAO_TURN;
+    LAO_EXACT float x = s.sum.x + hu * lao_cos_turns(tu);
+    LAO_EXACT float y = s.sum.y + hu * lao_sin_turns(tu);
+    LAO_EXACT float z = s.sum.z + hv * lao_cos_turns(tv);
+    LAO_EXACT float w = s.sum.w + hv * lao_sin_turns(tv);
+    r.sum = lao_v4_make(x, y, z, w);
+    r.share = lao_v2_make(s.share.x + hu, s.share.y + hv);
+    return r;
+}
+/* Whether the predictions leave anything when added up. */
+LAO_FN bool sdv_phase_agrees(float c, float s, float share) {
+    LAO_EXACT float size2 = c * c + s * s;
+    LAO_EXACT float least = 1.0e-4f * share;
+    return share > 0.0f && size2 > least * least;
+}
+/* (u, v) that the neighbours agree on; where they do not, what it was. */
+LAO_FN lao_v2 sdv_phases_mean(sdv_phases s, lao_v2 otherwise) {
+    lao_v2 r = otherwise;
+    if (sdv_phase_agrees(s.sum.x, s.sum.y, s.share.x)) {
+        r.x = lao_atan2(s.sum.y, s.sum.x);
+    }
+    if (sdv_phase_agrees(s.sum.z, s.sum.w, s.share.y)) {
+        r.y = lao_atan2(s.sum.w, s.sum.z);
+    }
+    return r;
+}
+/* Weight of a neighbour: near ones and vessels count (L19 Eq. 10), void alone counts alike. */
+LAO_FN float sdv_phase_weight(lao_v3 p, lao_v3 q, float covered, float stencil, float pixel) {
+    LAO_EXACT float h = stencil * lao_max(covered, 1.0e-6f) * sdv_nearness(p, q, 0.001f * pixel);
+    return h;
+}
+/* One neighbour's part: place and share of vessels (w), both directions, phases. */
+LAO_FN sdv_phases sdv_phases_hear(sdv_phases s, lao_v3 p, lao_v3 along, lao_v3 across, lao_v4 q,
+                                  lao_v3 along_other, lao_v3 across_other, lao_v2 phase,
+                                  float stencil, float frequency, float pixel) {
+    lao_v3 place = lao_v3_make(q.x, q.y, q.z);
+    lao_v3 apart = lao_v3_sub(p, place);
+    return sdv_phases_add(s, sdv_phase_from(along, along_other, phase.x, apart, frequency),
+                          sdv_phase_from(across, across_other, phase.y, apart, frequency),
+                          sdv_phase_weight(p, place, q.w, stencil, pixel));
+}
+
+/* ---- frame coherence (L19 3.7 with METHODS 7.4) */
+/* Coarsest level that a frame renews: the setting, or (negative) the largest with 2^level <= 1/16
+   period, at least 1. period: pixels. At rest a solution only goes on: level 0. */
+LAO_FN float sdv_recycle_level(float setting, float period, bool rests) {
+    if (rests) {
+        return 0.0f;
+    }
+    if (setting > -0.5f) {
+        return setting;
+    }
+    LAO_EXACT float level = lao_floor(lao_log2(lao_max(period / 16.0f, 2.0f)) + 1.0e-4f);
+    return level;
+}
+LAO_FN bool sdv_same_column(lao_v4 a, lao_v4 b) {
+    return a.x == b.x && a.y == b.y && a.z == b.z && a.w == b.w;
+}
+LAO_FN bool sdv_same_matrix(lao_m4 a, lao_m4 b) {
+    return sdv_same_column(a.x, b.x) && sdv_same_column(a.y, b.y) && sdv_same_column(a.z, b.z) &&
+           sdv_same_column(a.w, b.w);
+}
+/* The pixel of an image that shows p, and 1; 0: none does. */
+LAO_FN lao_v3 sdv_pixel_of(lao_m4 view, lao_m4 projection, lao_v3 p, float width, float height) {
+    lao_v4 clip = lao_project(projection, lao_transform(view, p));
+    if (!(clip.w > 1.0e-12f)) {
+        return lao_v3_make(0.0f, 0.0f, 0.0f);
+    }
+    LAO_EXACT float x = lao_floor((clip.x / clip.w * 0.5f + 0.5f) * width);
+    LAO_EXACT float y = lao_floor((clip.y / clip.w * 0.5f + 0.5f) * height);
+    if (!(x >= 0.0f && y >= 0.0f && x < width && y < height)) {
+        return lao_v3_make(0.0f, 0.0f, 0.0f);
+    }
+    return lao_v3_make(x, y, 1.0f);
+}
+/* Whether q, seen there in the last frame, is the surface at p with normal n: else it came into
+   view. pixel: mm. */
+LAO_FN bool sdv_same_surface(lao_v3 p, lao_v3 n, lao_v3 q, float pixel) {
+    lao_v3 apart = lao_v3_sub(q, p);
+    LAO_EXACT float off = lao_abs(lao_v3_dot(apart, n));
+    LAO_EXACT float most = 64.0f * pixel * pixel;
+    return off <= 2.0f * pixel && lao_v3_dot(apart, apart) <= most;
+}
+/* What the surface image says of a covered pixel (negative: of the void): the period, which a set
+   of the frame tells from other sets by a power of two. */
+LAO_FN float sdv_surface_mark(float period, float set) {
+    LAO_EXACT float r = period * lao_exp2(12.0f * set);
+    return r;
+}
+/* A guide of the screen as the last frame's camera saw it, in the world; for its sign only. */
+LAO_FN lao_v3 sdv_guide_world(lao_m4 view, float x, float y) {
+    lao_v3 right = lao_v3_make(view.x.x, view.y.x, view.z.x);
+    lao_v3 up = lao_v3_make(view.x.y, view.y.y, view.z.y);
+    return lao_v3_along(lao_v3_scale(right, x), up, y);
+}
+/* The guide on the screen, unit: the axis of sdv_tensor_axis, else the lifted direction as it is
+ * seen. */
+LAO_FN lao_v2 sdv_guide_screen(lao_m4 view, lao_v3 axis, lao_v3 along) {
+    if (axis.z > 0.5f) {
+        return lao_v2_make(axis.x, axis.y);
+    }
+    lao_v3 seen = sdv_turned(view, along);
+    lao_v3 unit = lao_v3_unit(lao_v3_make(seen.x, seen.y, 0.0f), lao_v3_make(1.0f, 0.0f, 0.0f));
+    return lao_v2_make(unit.x, unit.y);
+}
+/* The last frame's (u, v) at q as (u, v) at p: `before` is its guide in the world. Turned by its
+   sign, and moved along by what lies between. */
+LAO_FN lao_v2 sdv_phase_recall(lao_v3 along, lao_v3 across, lao_v3 before, lao_v2 phase,
+                               lao_v3 apart, float frequency) {
+    float s = lao_v3_dot(along, before) < 0.0f ? -1.0f : 1.0f;
+    LAO_EXACT float u = s * phase.x + frequency * lao_v3_dot(along, apart);
+    LAO_EXACT float v = s * phase.y + frequency * lao_v3_dot(across, apart);
+    return lao_v2_make(sdv_phase_wrap(u), sdv_phase_wrap(v));
+}
+/* now, before: of the surface image. A pixel that has not changed, seen by a camera that has not
+   moved, keeps its phases. */
+LAO_FN bool sdv_phase_stays(lao_v4 now, lao_v4 before) {
+    return now.w == before.w &&
+           (now.w < 0.0f || (now.x == before.x && now.y == before.y && now.z == before.z));
+}
+
+/* ---- illustration by (u, v): ink of a pixel, 0 .. 1, whose mean is the darkness (METHODS 7.5) */
+#define SDV_STYLE_PLAIN 0
+#define SDV_STYLE_STIPPLE 1
+#define SDV_STYLE_HATCH 2
+#define SDV_STYLE_CROSSHATCH 3
+#define SDV_STYLE_LAYERED 4
+#define SDV_STYLE_SHADOW 5 /* shaded, depth shadows hatched */
+#define SDV_VOID_PLAIN 0
+#define SDV_VOID_CHROMADEPTH 1
+#define SDV_VOID_STIPPLE 2
+#define SDV_VOID_HATCH 3
+/* Periods per pixel along the tangent z of a surface of normal n; right, up, direction: axes of the
+   screen and the view ray, unit. */
+LAO_FN float sdv_style_footprint(lao_v3 z, lao_v3 n, lao_v3 right, lao_v3 up, lao_v3 direction,
+                                 float pixel, float period) {
+    LAO_EXACT float facing = lao_min(lao_v3_dot(direction, n), -0.05f);
+    LAO_EXACT float slope = lao_v3_dot(z, direction) / facing;
+    LAO_EXACT float x = lao_v3_dot(z, right) - slope * lao_v3_dot(n, right);
+    LAO_EXACT float y = lao_v3_dot(z, up) - slope * lao_v3_dot(n, up);
+    LAO_EXACT float r = pixel * lao_sqrt(x * x + y * y) / period;
+    return r;
+}
+/* Ink from 0 to x of lines at the whole numbers, as wide as `dark`. */
+LAO_FN float sdv_lines_until(float x, float dark) {
+    LAO_EXACT float n = lao_floor(x + 0.5f);
+    LAO_EXACT float r = dark * n + lao_min(lao_max(x - n, -0.5f * dark), 0.5f * dark);
+    return r;
+}
+/* The mean of the lines over a pixel `wide` periods wide: exact, so that thin lines keep their
+ * tone. */
+LAO_FN float sdv_lines_ink(float x, float dark, float wide) {
+    LAO_EXACT float w = lao_max(wide, 1.0e-3f);
+    LAO_EXACT float r =
+        (sdv_lines_until(x + 0.5f * w, dark) - sdv_lines_until(x - 0.5f * w, dark)) / w;
+    return lao_clamp01(r);
+}
+/* A disc in the middle of the period's cell; its soft edge and what is too small for a pixel keep
+   their area. dark <= pi / 4. */
+LAO_FN float sdv_dot_ink(float a, float b, float dark, float wide_a, float wide_b) {
+    LAO_EXACT float r = lao_sqrt(a * a + b * b);
+    LAO_EXACT float wa = a * wide_a;
+    LAO_EXACT float wb = b * wide_b;
+    LAO_EXACT float mean = 0.5f * (wide_a + wide_b);
+    LAO_EXACT float w = lao_max(r > 1.0e-3f ? lao_sqrt(wa * wa + wb * wb) / r : mean, 1.0e-3f);
+    LAO_EXACT float squared = 0.318309886f * dark - 0.0833333333f * w * w;
+    LAO_EXACT float least = 0.25f * w * w;
+    LAO_EXACT float radius = lao_sqrt(lao_max(squared, least));
+    LAO_EXACT float share = lao_min(dark / (1.04719755f * w * w), 1.0f);
+    LAO_EXACT float ink = lao_clamp01(0.5f + (radius - r) / w) * (squared < least ? share : 1.0f);
+    LAO_EXACT float blur = lao_clamp01(5.0f * mean - 0.75f); /* cells too small to be seen */
+    LAO_EXACT float result = ink + blur * (dark - ink);
+    return result;
+}
+/* Dots; where they would touch, white ones between them. a, b in [-1/2, 1/2]. */
+LAO_FN float sdv_stipple_ink(float a, float b, float dark, float wide_a, float wide_b) {
+    LAO_EXACT float widest = 0.5f - 0.25f * (wide_a + wide_b);
+    LAO_EXACT float touch = 3.14159265f * widest * widest;
+    if (dark <= 0.5f || (dark <= touch && widest > 0.0f)) {
+        return sdv_dot_ink(a, b, dark, wide_a, wide_b);
+    }
+    float x = a < 0.0f ? a + 0.5f : a - 0.5f;
+    float y = b < 0.0f ? b + 0.5f : b - 0.5f;
+    LAO_EXACT float r = 1.0f - sdv_dot_ink(x, y, 1.0f - dark, wide_a, wide_b);
+    return r;
+}
+LAO_FN float sdv_crosshatch_ink(float a, float b, float dark, float wide_a, float wide_b) {
+    LAO_EXACT float each = 1.0f - lao_sqrt(lao_max(1.0f - dark, 0.0f));
+    LAO_EXACT float r =
+        1.0f - (1.0f - sdv_lines_ink(a, each, wide_a)) * (1.0f - sdv_lines_ink(b, each, wide_b));
+    return r;
+}
+/* u, v: radians; even in both, as (-u, -v) is the same place seen along the other direction. */
+LAO_FN float sdv_style_ink(lao_int style, float u, float v, float darkness, float wide_u,
+                           float wide_v) {
+    LAO_EXACT float a = u / LAO_TURN;
+    LAO_EXACT float b = v / LAO_TURN;
+    float dark = lao_clamp01(darkness);
+    if (style == SDV_STYLE_STIPPLE || (style == SDV_STYLE_LAYERED && dark < 0.35f)) {
+        return sdv_stipple_ink(a, b, dark, wide_u, wide_v);
+    }
+    if (style == SDV_STYLE_CROSSHATCH || (style == SDV_STYLE_LAYERED && dark > 0.7f)) {
+        return sdv_crosshatch_ink(a, b, dark, wide_u, wide_v);
+    }
+    return sdv_lines_ink(b, dark, wide_v);
+}
+/* What a head light leaves of white, without a highlight. */
+LAO_FN float sdv_style_tone(float facing, float ambient, float diffuse, float light) {
+    LAO_EXACT float r = (ambient + diffuse * lao_max(facing, 0.0f)) * light;
+    return lao_clamp01(r);
+}
+/* Red near, blue far (METHODS 6.1, RSH06). */
+LAO_FN lao_v3 sdv_chromadepth(float depth) {
+    float d = lao_clamp01(depth);
+    return lao_v3_make(1.0f - d, 0.0f, d);
 }
 /* SDV_SHARED_END */
 
@@ -4226,6 +4662,15 @@ SDV_API lao_result sdv_pull_push(const sdv_host *host, const sdv_pull_push_desc 
 #define SDV__WRITE(image) {image, LAO_LEVEL_SAME, 0, LAO_PHASE_THIS, LAO_LOAD_DISCARD}
 #define SDV__READ(image) {image, LAO_LEVEL_SAME, 0, LAO_PHASE_THIS, LAO_LOAD_DISCARD}
 #define SDV__KEEP(image) {image, LAO_LEVEL_SAME, 0, LAO_PHASE_THIS, LAO_LOAD_KEEP}
+#define SDV__OTHER(image) {image, LAO_LEVEL_SAME, 0, LAO_PHASE_OTHER, LAO_LOAD_DISCARD}
+#define SDV__BEFORE(image) {image, LAO_LEVEL_SAME, 0, LAO_PHASE_PREVIOUS, LAO_LOAD_DISCARD}
+#define SDV__FINER(image) {image, LAO_LEVEL_FINER, 0, LAO_PHASE_THIS, LAO_LOAD_DISCARD}
+#define SDV__COARSER(image) {image, LAO_LEVEL_COARSER, 0, LAO_PHASE_THIS, LAO_LOAD_DISCARD}
+#define SDV__TOP(image) {image, LAO_LEVEL_INDEX, 31, LAO_PHASE_THIS, LAO_LOAD_DISCARD}
+#define SDV__BACKGROUND {"parameterization", '>', 0}
+#define SDV__PARAMETERIZED {"parameterization", '>', 1}
+#define SDV__WITH_BACKGROUND {{"#vessel_cells", '>', 0}, SDV__BACKGROUND}
+#define SDV__WITH_PHASES {{"#vessel_cells", '>', 0}, SDV__PARAMETERIZED}
 #define SDV__WITH_TREE {{"#vessel_cells", '>', 0}, {"#vessel_shapes", '=', 0}}
 #define SDV__WITH_SHAPES {{"#vessel_cells", '>', 0}, {"#vessel_shapes", '>', 0}}
 
@@ -4238,7 +4683,21 @@ static const lao_buffer_row sdv__buffers[] = {
 static const lao_image_row sdv__images[] = {
     {"vessel_position", LAO_FORMAT_RGBA32F, LAO_SIZE_FULL, 0, 0, NULL, 0, LAO_ENCODING_PLAIN, {0, 0, 0, -1}, {NULL, 0, 0}, {"position.X", "position.Y", "position.Z", "segment.V"}},
     {"vessel_normal",   LAO_FORMAT_RGBA32F, LAO_SIZE_FULL, 0, 0, NULL, 0, LAO_ENCODING_PLAIN, {0, 0, 0, 0},  {NULL, 0, 0}, {"normal.X", "normal.Y", "normal.Z", "dmin.V"}},
-    {"vessel_ray",      LAO_FORMAT_RGBA32F, LAO_SIZE_FULL, 0, 0, NULL, 0, LAO_ENCODING_PLAIN, {0, 0, 0, 0},  {NULL, 0, 0}, {NULL, NULL, NULL, NULL}}
+    {"vessel_ray",      LAO_FORMAT_RGBA32F, LAO_SIZE_FULL, 0, 0, NULL, 0, LAO_ENCODING_PLAIN, {0, 0, 0, 0},  {NULL, 0, 0}, {NULL, NULL, NULL, NULL}},
+    /* where there is a parameterization: of pyramids, levels down to one texel; what each holds stands in its shader */
+    {"vessel_depth", LAO_FORMAT_RGBA32F, LAO_SIZE_FULL, 0, 0, "*", 0, LAO_ENCODING_PLAIN, {0, 0, 0, 0}, SDV__BACKGROUND, {NULL, NULL, NULL, NULL}},
+    {"vessel_filled", LAO_FORMAT_RGBA32F, LAO_SIZE_FULL, 0, 0, "*", 0, LAO_ENCODING_PLAIN, {0, 0, 0, 0}, SDV__BACKGROUND, {NULL, NULL, NULL, NULL}},
+    {"vessel_surface", LAO_FORMAT_RGBA32F, LAO_SIZE_FULL, 0, 0, NULL, LAO_IMAGE_HISTORY, LAO_ENCODING_PLAIN, {0, 0, 0, 0}, SDV__BACKGROUND, {"bgposition.X", "bgposition.Y", "bgposition.Z", NULL}},
+    {"vessel_bgnormal", LAO_FORMAT_RGBA32F, LAO_SIZE_FULL, 0, 0, NULL, 0, LAO_ENCODING_PLAIN, {0, 0, 0, 0}, SDV__BACKGROUND, {"bgnormal.X", "bgnormal.Y", "bgnormal.Z", NULL}},
+    {"vessel_place", LAO_FORMAT_RGBA32F, LAO_SIZE_FULL, 0, 0, "*", 0, LAO_ENCODING_PLAIN, {0, 0, 0, 0}, SDV__PARAMETERIZED, {NULL, NULL, NULL, NULL}},
+    {"vessel_facing", LAO_FORMAT_RGBA32F, LAO_SIZE_FULL, 0, 0, "*", 0, LAO_ENCODING_PLAIN, {0, 0, 0, 0}, SDV__PARAMETERIZED, {NULL, NULL, NULL, NULL}},
+    {"vessel_tensor", LAO_FORMAT_RGBA32F, LAO_SIZE_FULL, 0, 0, "*", 0, LAO_ENCODING_PLAIN, {0, 0, 0, 0}, SDV__PARAMETERIZED, {NULL, NULL, NULL, NULL}},
+    {"vessel_spread", LAO_FORMAT_RGBA32F, LAO_SIZE_FULL, 0, 0, "*", 0, LAO_ENCODING_PLAIN, {0, 0, 0, 0}, SDV__PARAMETERIZED, {NULL, NULL, NULL, NULL}},
+    {"vessel_along", LAO_FORMAT_RGBA32F, LAO_SIZE_FULL, 0, 0, "*", 0, LAO_ENCODING_PLAIN, {0, 0, 0, 0}, SDV__PARAMETERIZED, {NULL, NULL, NULL, NULL}},
+    {"vessel_across", LAO_FORMAT_RGBA32F, LAO_SIZE_FULL, 0, 0, "*", 0, LAO_ENCODING_PLAIN, {0, 0, 0, 0}, SDV__PARAMETERIZED, {NULL, NULL, NULL, NULL}},
+    {"vessel_recalled", LAO_FORMAT_RGBA32F, LAO_SIZE_FULL, 0, 0, "*", 0, LAO_ENCODING_PLAIN, {0, 0, 0, 0}, SDV__PARAMETERIZED, {NULL, NULL, NULL, NULL}},
+    {"vessel_phase", LAO_FORMAT_RGBA32F, LAO_SIZE_FULL, 0, 0, "*", 0, LAO_ENCODING_PLAIN, {0, 0, 0, 0}, SDV__PARAMETERIZED, {NULL, NULL, NULL, NULL}},
+    {"vessel_uv", LAO_FORMAT_RGBA32F, LAO_SIZE_FULL, 0, 0, NULL, LAO_IMAGE_HISTORY, LAO_ENCODING_PLAIN, {0, 0, 0, 0}, SDV__PARAMETERIZED, {"uv.U", "uv.V", "guide.X", "guide.Y"}}
 };
 
 static const lao_pass_row sdv__passes[] = {
@@ -4248,16 +4707,66 @@ static const lao_pass_row sdv__passes[] = {
     {"vessel_carve", LAO_PASS_FULLSCREEN, "vessel_carve", 0, LAO_STAGE_DRAW, LAO_SCOPE_PER_SET, LAO_REPEAT_NONE, NULL, LAO_BLEND_NONE, LAO_DEPTH_NONE, LAO_CULL_NONE, SDV__WITH_SHAPES,
      {SDV__WRITE("vessel_position"), SDV__WRITE("vessel_normal"), SDV__WRITE("vessel_ray")},
      {SDV__READ("#vessel_box"), SDV__READ("#vessel_cells"), SDV__READ("#vessel_ids"), SDV__READ("#vessel_cones"), SDV__READ("#vessel_shapes"), SDV__READ("#vessel_fields")}},
+    /* the void: depth pulled up and pushed down, then a place and a normal for every pixel (L19 3.4) */
+    {"vessel_depth", LAO_PASS_FULLSCREEN, "vessel_depth", 0, LAO_STAGE_SHADE, LAO_SCOPE_PER_SET, LAO_REPEAT_NONE, NULL, LAO_BLEND_NONE, LAO_DEPTH_NONE, LAO_CULL_NONE, SDV__WITH_BACKGROUND,
+     {SDV__WRITE("vessel_depth")},
+     {SDV__READ("vessel_position"), SDV__BEFORE("vessel_surface")}},
+    {"vessel_depth_up", LAO_PASS_FULLSCREEN, "vessel_pull", SDV_PULL_MEAN, LAO_STAGE_SHADE, LAO_SCOPE_PER_SET, LAO_REPEAT_LEVELS_UP, NULL, LAO_BLEND_NONE, LAO_DEPTH_NONE, LAO_CULL_NONE, SDV__WITH_BACKGROUND,
+     {SDV__WRITE("vessel_depth")},
+     {SDV__FINER("vessel_depth")}},
+    {"vessel_fill_top", LAO_PASS_FULLSCREEN, "vessel_fill", 1, LAO_STAGE_SHADE, LAO_SCOPE_PER_SET, LAO_REPEAT_NONE, NULL, LAO_BLEND_NONE, LAO_DEPTH_NONE, LAO_CULL_NONE, SDV__WITH_BACKGROUND,
+     {SDV__TOP("vessel_filled")},
+     {SDV__TOP("vessel_depth"), SDV__TOP("vessel_depth")}},
+    {"vessel_fill", LAO_PASS_FULLSCREEN, "vessel_fill", 0, LAO_STAGE_SHADE, LAO_SCOPE_PER_SET, LAO_REPEAT_LEVELS_DOWN, NULL, LAO_BLEND_NONE, LAO_DEPTH_NONE, LAO_CULL_NONE, SDV__WITH_BACKGROUND,
+     {SDV__WRITE("vessel_filled")},
+     {SDV__READ("vessel_depth"), SDV__COARSER("vessel_filled")}},
+    {"vessel_surface", LAO_PASS_FULLSCREEN, "vessel_surface", 0, LAO_STAGE_SHADE, LAO_SCOPE_PER_SET, LAO_REPEAT_NONE, NULL, LAO_BLEND_NONE, LAO_DEPTH_NONE, LAO_CULL_NONE, SDV__WITH_BACKGROUND,
+     {SDV__WRITE("vessel_surface"), SDV__WRITE("vessel_bgnormal"), SDV__WRITE("vessel_place"), SDV__WRITE("vessel_facing"), SDV__WRITE("vessel_tensor")},
+     {SDV__READ("vessel_filled"), SDV__READ("vessel_depth"), SDV__READ("vessel_position"), SDV__READ("vessel_normal"), SDV__READ("#vessel_cones")}},
+    /* the guiding field of the contours (L19 3.5) */
+    {"vessel_place_up", LAO_PASS_FULLSCREEN, "vessel_gather", 0, LAO_STAGE_SHADE, LAO_SCOPE_PER_SET, LAO_REPEAT_LEVELS_UP, NULL, LAO_BLEND_NONE, LAO_DEPTH_NONE, LAO_CULL_NONE, SDV__WITH_PHASES,
+     {SDV__WRITE("vessel_place"), SDV__WRITE("vessel_facing")},
+     {SDV__FINER("vessel_place"), SDV__FINER("vessel_facing")}},
+    {"vessel_tensor_up", LAO_PASS_FULLSCREEN, "vessel_pull", SDV_PULL_SUM, LAO_STAGE_SHADE, LAO_SCOPE_PER_SET, LAO_REPEAT_LEVELS_UP, NULL, LAO_BLEND_NONE, LAO_DEPTH_NONE, LAO_CULL_NONE, SDV__WITH_PHASES,
+     {SDV__WRITE("vessel_tensor")},
+     {SDV__FINER("vessel_tensor")}},
+    {"vessel_guide_top", LAO_PASS_FULLSCREEN, "vessel_guide", 1, LAO_STAGE_SHADE, LAO_SCOPE_PER_SET, LAO_REPEAT_NONE, NULL, LAO_BLEND_NONE, LAO_DEPTH_NONE, LAO_CULL_NONE, SDV__WITH_PHASES,
+     {SDV__TOP("vessel_spread"), SDV__TOP("vessel_along"), SDV__TOP("vessel_across")},
+     {SDV__TOP("vessel_tensor"), SDV__TOP("vessel_place"), SDV__TOP("vessel_facing"), SDV__TOP("vessel_tensor"), SDV__TOP("vessel_place"), SDV__TOP("vessel_facing")}},
+    {"vessel_guide", LAO_PASS_FULLSCREEN, "vessel_guide", 0, LAO_STAGE_SHADE, LAO_SCOPE_PER_SET, LAO_REPEAT_LEVELS_DOWN, NULL, LAO_BLEND_NONE, LAO_DEPTH_NONE, LAO_CULL_NONE, SDV__WITH_PHASES,
+     {SDV__WRITE("vessel_spread"), SDV__WRITE("vessel_along"), SDV__WRITE("vessel_across")},
+     {SDV__READ("vessel_tensor"), SDV__READ("vessel_place"), SDV__READ("vessel_facing"), SDV__COARSER("vessel_spread"), SDV__COARSER("vessel_place"), SDV__COARSER("vessel_along")}},
+    /* phases: the last frame's pulled up, then pushed down and optimised (L19 3.6, 3.7) */
+    {"vessel_recall", LAO_PASS_FULLSCREEN, "vessel_recall", 0, LAO_STAGE_SHADE, LAO_SCOPE_PER_SET, LAO_REPEAT_NONE, NULL, LAO_BLEND_NONE, LAO_DEPTH_NONE, LAO_CULL_NONE, SDV__WITH_PHASES,
+     {SDV__WRITE("vessel_recalled")},
+     {SDV__READ("vessel_surface"), SDV__READ("vessel_bgnormal"), SDV__READ("vessel_along"), SDV__READ("vessel_across"), SDV__BEFORE("vessel_surface"), SDV__BEFORE("vessel_uv")}},
+    {"vessel_recall_up", LAO_PASS_FULLSCREEN, "vessel_recall_up", 0, LAO_STAGE_SHADE, LAO_SCOPE_PER_SET, LAO_REPEAT_LEVELS_UP, NULL, LAO_BLEND_NONE, LAO_DEPTH_NONE, LAO_CULL_NONE, SDV__WITH_PHASES,
+     {SDV__WRITE("vessel_recalled")},
+     {SDV__FINER("vessel_recalled"), SDV__FINER("vessel_place"), SDV__FINER("vessel_along"), SDV__FINER("vessel_across"), SDV__READ("vessel_place"), SDV__READ("vessel_along"), SDV__READ("vessel_across")}},
+    {"vessel_phase_top", LAO_PASS_FULLSCREEN, "vessel_phase", 1, LAO_STAGE_SHADE, LAO_SCOPE_PER_SET, LAO_REPEAT_NONE, NULL, LAO_BLEND_NONE, LAO_DEPTH_NONE, LAO_CULL_NONE, SDV__WITH_PHASES,
+     {SDV__TOP("vessel_phase")},
+     {SDV__TOP("vessel_recalled"), SDV__TOP("vessel_place"), SDV__TOP("vessel_along"), SDV__TOP("vessel_across"), SDV__TOP("vessel_place"), SDV__TOP("vessel_along"), SDV__TOP("vessel_across"), SDV__TOP("vessel_recalled")}},
+    {"vessel_phase", LAO_PASS_FULLSCREEN, "vessel_phase", 0, LAO_STAGE_SHADE, LAO_SCOPE_PER_SET, LAO_REPEAT_LEVELS_DOWN, NULL, LAO_BLEND_NONE, LAO_DEPTH_NONE, LAO_CULL_NONE, SDV__WITH_PHASES,
+     {SDV__WRITE("vessel_phase")},
+     {SDV__READ("vessel_recalled"), SDV__READ("vessel_place"), SDV__READ("vessel_along"), SDV__READ("vessel_across"), SDV__COARSER("vessel_place"), SDV__COARSER("vessel_along"), SDV__COARSER("vessel_across"), SDV__COARSER("vessel_phase")}},
+    {"vessel_sweep", LAO_PASS_FULLSCREEN, "vessel_sweep", 0, LAO_STAGE_SHADE, LAO_SCOPE_PER_SET, LAO_REPEAT_WITH_LAST, "ssp_sweeps", LAO_BLEND_NONE, LAO_DEPTH_NONE, LAO_CULL_NONE, SDV__WITH_PHASES,
+     {SDV__OTHER("vessel_phase")},
+     {SDV__READ("vessel_phase"), SDV__READ("vessel_place"), SDV__READ("vessel_along"), SDV__READ("vessel_across")}},
+    {"vessel_uv", LAO_PASS_FULLSCREEN, "vessel_uv", 0, LAO_STAGE_SHADE, LAO_SCOPE_PER_SET, LAO_REPEAT_NONE, NULL, LAO_BLEND_NONE, LAO_DEPTH_NONE, LAO_CULL_NONE, SDV__WITH_PHASES,
+     {SDV__WRITE("vessel_uv")},
+     {SDV__READ("vessel_phase"), SDV__READ("vessel_spread"), SDV__READ("vessel_along"), SDV__READ("vessel_surface"), SDV__BEFORE("vessel_surface"), SDV__BEFORE("vessel_uv")}},
     {"vessel_shade", LAO_PASS_FULLSCREEN, "vessel_shade", 0, LAO_STAGE_SHADE, LAO_SCOPE_PER_SET, LAO_REPEAT_NONE, NULL, LAO_BLEND_NONE, LAO_DEPTH_NEARER, LAO_CULL_NONE, SDV__WITH_TREE,
      {SDV__KEEP("shaded"), SDV__KEEP("zbuffer")},
      {SDV__READ("vessel_position"), SDV__READ("vessel_normal"), SDV__READ("vessel_ray"), SDV__READ("#vessel_colors"),
       SDV__READ("#vessel_box"), SDV__READ("#vessel_cells"), SDV__READ("#vessel_ids"), SDV__READ("#vessel_cones"),
-      SDV__READ("#vessel_shapes"), SDV__READ("#vessel_fields")}},
+      SDV__READ("#vessel_shapes"), SDV__READ("#vessel_fields"),
+      SDV__READ("vessel_uv"), SDV__READ("vessel_surface"), SDV__READ("vessel_bgnormal"), SDV__READ("vessel_along"), SDV__READ("vessel_across")}},
     {"vessel_shade_cut", LAO_PASS_FULLSCREEN, "vessel_shade", 1, LAO_STAGE_SHADE, LAO_SCOPE_PER_SET, LAO_REPEAT_NONE, NULL, LAO_BLEND_NONE, LAO_DEPTH_NEARER, LAO_CULL_NONE, SDV__WITH_SHAPES,
      {SDV__KEEP("shaded"), SDV__KEEP("zbuffer")},
      {SDV__READ("vessel_position"), SDV__READ("vessel_normal"), SDV__READ("vessel_ray"), SDV__READ("#vessel_colors"),
       SDV__READ("#vessel_box"), SDV__READ("#vessel_cells"), SDV__READ("#vessel_ids"), SDV__READ("#vessel_cones"),
-      SDV__READ("#vessel_shapes"), SDV__READ("#vessel_fields")}}
+      SDV__READ("#vessel_shapes"), SDV__READ("#vessel_fields"),
+      SDV__READ("vessel_uv"), SDV__READ("vessel_surface"), SDV__READ("vessel_bgnormal"), SDV__READ("vessel_along"), SDV__READ("vessel_across")}}
 };
 
 static const lao_setting_row sdv__settings[] = {

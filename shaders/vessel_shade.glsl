@@ -10,11 +10,19 @@ LAO_TEX(6, samplerBuffer, ids)
 LAO_TEX(7, samplerBuffer, cones)
 LAO_TEX(8, samplerBuffer, shapes) /* with variant 1 */
 LAO_TEX(9, samplerBuffer, fields)
+LAO_TEX(10, sampler2D, uv)
+LAO_TEX(11, sampler2D, surface)
+LAO_TEX(12, sampler2D, bgnormal)
+LAO_TEX(13, sampler2D, along)
+LAO_TEX(14, sampler2D, across)
 LAO_CONSTANT(0, lao_constant_near_miss)
 LAO_CONSTANT(1, lao_constant_surface_shininess)
 LAO_CONSTANT(2, lao_constant_field_occlusion)
-LAO_CONSTANT(3, lao_constant_variant) /* 1: with shapes */
-LAO_CONSTANT(4, lao_constant_supersampling)
+LAO_CONSTANT(3, lao_constant_parameterization)
+LAO_CONSTANT(4, lao_constant_style)
+LAO_CONSTANT(5, lao_constant_void_style)
+LAO_CONSTANT(6, lao_constant_variant) /* 1: with shapes */
+LAO_CONSTANT(7, lao_constant_supersampling)
 
 LAO_OUT(0, vec4, out_color)
 
@@ -40,6 +48,54 @@ float openness(sdv_box b, lao_v3 p, lao_v3 n, bool inside) {
     return sdv_open_result(closed);
 }
 
+/* Periods per pixel of the pixel's u or v, or of depth. */
+float footprint(lao_v3 z, lao_v3 n, lao_v3 p, lao_v3 direction, float period) {
+    lao_v3 zero = lao_v3_make(0.0, 0.0, 0.0);
+    float mm = sdv_pixel_size(lao_frame.ray, sdv_depth_of(lao_frame.view, p), lao_frame.depth.w);
+    return sdv_style_footprint(z, n, lao_v3_unit(lao_frame.world.x.xyz, zero), lao_v3_unit(lao_frame.world.y.xyz, zero),
+                               direction, mm, period);
+}
+/* Ink of a style at the pixel. */
+float ink(ivec2 pixel, int style, lao_v3 n, lao_v3 p, lao_v3 direction, float dark) {
+    vec4 phase = texelFetch(uv, pixel, 0);
+    float wide_u = footprint(texelFetch(along, pixel, 0).xyz, n, p, direction, lao_setting_ssp_period);
+    float wide_v = footprint(texelFetch(across, pixel, 0).xyz, n, p, direction, lao_setting_ssp_period);
+    return sdv_style_ink(style, phase.x, phase.y, dark, wide_u, wide_v);
+}
+/* Ink of a depth shadow: lines the other way. */
+float shadow_ink(ivec2 pixel, lao_v3 n, lao_v3 p, lao_v3 direction, float dark) {
+    LAO_EXACT float a = texelFetch(uv, pixel, 0).x / LAO_TURN;
+    return sdv_lines_ink(a, lao_clamp01(lao_setting_shadow_strength * dark),
+                         footprint(texelFetch(along, pixel, 0).xyz, n, p, direction, lao_setting_ssp_period));
+}
+/* The void: depth as colour with lines, or ink. */
+vec4 void_color(ivec2 pixel, lao_v3 direction) {
+    lao_v3 p = texelFetch(surface, pixel, 0).xyz;
+    lao_v3 n = texelFetch(bgnormal, pixel, 0).xyz;
+    float facing = -lao_v3_dot(n, direction);
+    if (lao_constant_void_style == SDV_VOID_CHROMADEPTH) {
+        LAO_EXACT float depth = (sdv_depth_of(lao_frame.view, p) - lao_frame.depth.x) * lao_frame.depth.y;
+        LAO_EXACT float light = 0.7 + 0.3 * lao_max(facing, 0.0);
+        if (lao_setting_isolines > 0.5) {
+            lao_v3 back = lao_v3_unit(lao_frame.world.z.xyz, lao_v3_make(0.0, 0.0, 1.0));
+            LAO_EXACT float gap = 1.0 / (lao_setting_isolines * lao_frame.depth.y);
+            LAO_EXACT float wide = footprint(back, n, p, direction, gap);
+            LAO_EXACT float place = depth * lao_setting_isolines;
+            LAO_EXACT float line = sdv_lines_ink(place, lao_min(1.5 * wide, 0.5), wide);
+            light = sdv_dimmed(light, line, 0.7);
+        }
+        return vec4(lao_v3_scale(sdv_chromadepth(depth), light), 1.0);
+    }
+    float tone = sdv_style_tone(facing, 0.5, 0.5, 1.0); /* half black where the sheet is seen edge-on */
+    int style = lao_constant_void_style == SDV_VOID_STIPPLE ? SDV_STYLE_STIPPLE : SDV_STYLE_HATCH;
+    LAO_EXACT float white = 1.0 - ink(pixel, style, n, p, direction, 1.0 - tone);
+    return vec4(white, white, white, 1.0);
+}
+bool has_void() {
+    return lao_constant_void_style != SDV_VOID_PLAIN &&
+           lao_constant_parameterization > (lao_constant_void_style == SDV_VOID_CHROMADEPTH ? 0 : 1);
+}
+
 void main() {
     ivec2 pixel = LAO_PIXEL;
     vec4 hit = texelFetch(position, pixel, 0);
@@ -61,7 +117,12 @@ void main() {
         }
     }
     if (missed && !outlined) {
-        discard;
+        if (!has_void()) {
+            discard;
+        }
+        gl_FragDepth = lao_frame.scale.z > 0.5 ? 1.0e-7 : 0.9999999; /* before nothing but the empty depth buffer */
+        out_color = void_color(pixel, direction);
+        return;
     }
     lao_v3 p = outlined ? lao_v3_along(origin, direction, r.y) : hit.xyz;
     lao_v4 clip = lao_project(lao_frame.projection, lao_transform(lao_frame.view, p));
@@ -82,14 +143,30 @@ void main() {
     if (lao_constant_field_occlusion != 0) {
         light = sdv_dimmed(light, 1.0 - openness(sdv_box_fetch(box), p, n.xyz, r.w > 0.5), lao_setting_occlusion_strength);
     }
+    bool inked = lao_constant_parameterization > 1 && lao_constant_style != SDV_STYLE_PLAIN;
+    LAO_EXACT float dark = 0.0;
     if (lao_constant_near_miss != SDV_NEAR_MISS_NONE) {
-        float dark = sdv_depth_shadow(n.w, r.y, r.x, lao_setting_shadow_ratio,
-                                      0.01 * lao_setting_shadow_width * lao_frame.depth.z, lao_setting_shadow_softness);
+        dark = sdv_depth_shadow(n.w, r.y, r.x, lao_setting_shadow_ratio,
+                                0.01 * lao_setting_shadow_width * lao_frame.depth.z, lao_setting_shadow_softness);
+    }
+    bool shadowed = dark > 0.0;
+    if (!inked) {
         light = sdv_dimmed(light, dark, lao_setting_shadow_strength);
     }
-    out_color = vec4(sdv_shade(color, n.xyz, lao_v3_scale(direction, -1.0), lao_setting_surface_ambient,
-                               lao_setting_surface_diffuse, lao_setting_surface_specular, lao_constant_surface_shininess,
-                               light),
-                     1.0);
+    LAO_EXACT float white = 1.0;
+    if (shadowed && inked) {
+        white = 1.0 - shadow_ink(pixel, n.xyz, p, direction, dark);
+    }
+    lao_v3 towards = lao_v3_scale(direction, -1.0);
+    if (inked && lao_constant_style != SDV_STYLE_SHADOW) {
+        float tone = sdv_style_tone(lao_v3_dot(n.xyz, towards), lao_setting_surface_ambient, lao_setting_surface_diffuse,
+                                    light);
+        LAO_EXACT float paper = white * (1.0 - ink(pixel, lao_constant_style, n.xyz, p, direction, 1.0 - tone));
+        out_color = vec4(lao_v3_scale(color, paper), 1.0);
+        return;
+    }
+    lao_v3 shade = sdv_shade(color, n.xyz, towards, lao_setting_surface_ambient, lao_setting_surface_diffuse,
+                             lao_setting_surface_specular, lao_constant_surface_shininess, light);
+    out_color = vec4(lao_v3_scale(shade, white), 1.0);
 }
 #endif

@@ -602,6 +602,11 @@ void render_draw(render_device *device, const render_shot *shot, render_result *
     frame.flags = shot->frame_flags;
     frame.sets = sets;
     frame.set_count = shot->set_count;
+    for (uint32_t i = 0; i < shot->before_count; i++) {
+        frame.camera = shot->before[i];
+        draw(device, &frame);
+    }
+    frame.camera = shot->camera;
     draw(device, &frame);
     result->frame = spy.frame;
     read_all(device, frame.view, result);

@@ -13,7 +13,7 @@
 
 #include <cmocka.h>
 
-enum { RENDER_MOST_IMAGES = 64, RENDER_MOST_SETS = 4 };
+enum { RENDER_MOST_IMAGES = 256, RENDER_MOST_SETS = 4 };
 
 /* ---- devices ---------------------------------------------------------------------------- */
 
@@ -79,6 +79,8 @@ enum render_target { RENDER_NO_TARGET, RENDER_TARGET_RGBA8, RENDER_TARGET_RGBA32
 typedef struct render_shot {
     uint32_t width, height;
     lao_camera camera;
+    const lao_camera *before; /* (Optional) frames drawn before in the same view */
+    uint32_t before_count;
     const render_lines *lines[RENDER_MOST_SETS]; /* NULL: none */
     const lao_settings *settings[RENDER_MOST_SETS];
     const lao_object_desc *objects[RENDER_MOST_SETS]; /* NULL: none */

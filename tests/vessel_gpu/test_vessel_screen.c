@@ -1,0 +1,299 @@
+/* What fills the void, the guiding field and the parameterization are the same numbers in C, on
+   OpenGL and on Vulkan, to the bit, over several frames too: what does not change keeps its phases,
+   what moves takes them along. */
+#include "render_host.h"
+#include "screen_passes.h"
+#include "vessel_subject.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { WIDTH = 97, HEIGHT = 70 }; /* odd, so that no level halves evenly */
+
+static render_device devices[2];
+static const lao_module *modules[1];
+
+typedef struct scene {
+    render_shot shot;
+    lao_settings lines;
+    sdv_settings vessel;
+    const void *settings[1];
+} scene;
+
+static void scene_make(scene *s, const subject *tree) {
+    memset(s, 0, sizeof *s);
+    s->shot.width = WIDTH;
+    s->shot.height = HEIGHT;
+    s->shot.set_count = 1;
+    s->shot.settings[0] = &s->lines;
+    s->shot.objects[0] = &tree->object.desc;
+    s->settings[0] = &s->vessel;
+    s->shot.module_settings[0] = s->settings;
+    s->shot.background[3] = 1;
+    s->lines.set = LAO_SET(occlusion);
+    s->lines.supersampling = 1;
+    s->vessel.parameterization = 2;
+    s->vessel.ssp_period = 1.5f;
+    s->shot.camera = render_camera(0.3, 0.5, 0.8, 45);
+    render_perspective(&s->shot.camera, 40, (double)WIDTH / HEIGHT, 1, 200);
+}
+
+static const lao_v4 *texels_of(const render_result *result, const char *name, uint32_t level) {
+    const render_image *image = render_find(result, name, level);
+    assert_non_null(image);
+    assert_int_equal(image->format, LAO_FORMAT_RGBA32F);
+    return (const lao_v4 *)(const void *)image->data;
+}
+
+static void same(const render_result *result, const char *name, uint32_t level, const lao_v4 *c,
+                 uint32_t count) {
+    const lao_v4 *gpu = texels_of(result, name, level);
+    for (uint32_t i = 0; i < count; i++) {
+        if (memcmp(&gpu[i], &c[i], sizeof c[i]) != 0) {
+            fail_msg("%s level %u texel %u: %.9g %.9g %.9g %.9g, in C %.9g %.9g %.9g %.9g", name,
+                     level, i, (double)gpu[i].x, (double)gpu[i].y, (double)gpu[i].z,
+                     (double)gpu[i].w, (double)c[i].x, (double)c[i].y, (double)c[i].z,
+                     (double)c[i].w);
+        }
+    }
+}
+
+static void same_pyramid(const render_result *result, const screen *s, const char *name,
+                         const screen_pyramid c) {
+    for (uint32_t l = 0; l < s->levels; l++) {
+        uint32_t w, h;
+        screen_size(s, l, &w, &h);
+        same(result, name, l, c[l], w * h);
+    }
+}
+
+static void screen_of(const scene *s, const subject *tree, screen *c) {
+    sdv_settings v = s->vessel;
+    float values[SDV_SETTING_COUNT];
+    assert_true(screen_make(c, s->shot.width, s->shot.height));
+    assert_int_equal(lao_settings_resolve(sdv_module(), &v, values), -1);
+    c->threshold = values[SDV_SETTING_ID_guide_threshold];
+    c->period = values[SDV_SETTING_ID_ssp_period];
+    c->recycle = values[SDV_SETTING_ID_ssp_recycle];
+    c->converge = values[SDV_SETTING_ID_ssp_converge];
+    c->sweeps = (int)values[SDV_SETTING_ID_ssp_sweeps];
+    c->guide = (int)values[SDV_SETTING_ID_guide];
+    c->cones = tree->grid.cones;
+}
+
+/* A frame of a device against C, whose `c` holds the frame before. */
+static void check_frame(const scene *s, const render_result *result, screen *c) {
+    uint32_t n = c->width * c->height;
+    c->frame = result->frame;
+    screen_background(c, texels_of(result, "vessel_position", 0),
+                      texels_of(result, "vessel_normal", 0));
+    same_pyramid(result, c, "vessel_depth", c->depth);
+    same_pyramid(result, c, "vessel_filled", c->filled);
+    same(result, "vessel_surface", 0, c->surface, n);
+    same(result, "vessel_bgnormal", 0, c->bgnormal, n);
+    if (s->vessel.parameterization > 1) {
+        screen_guide(c);
+        same_pyramid(result, c, "vessel_place", c->place);
+        same_pyramid(result, c, "vessel_facing", c->facing);
+        same_pyramid(result, c, "vessel_tensor", c->tensor);
+        same_pyramid(result, c, "vessel_spread", c->spread);
+        same_pyramid(result, c, "vessel_along", c->along);
+        same_pyramid(result, c, "vessel_across", c->across);
+        screen_parameterize(c);
+        same_pyramid(result, c, "vessel_recalled", c->recalled);
+        if (c->sweeps % 2 == 0) /* else the two images of a level change places */
+            same_pyramid(result, c, "vessel_phase", c->phase);
+        same(result, "vessel_uv", 0, c->uv, n);
+    }
+    memcpy(c->surface_before, c->surface, n * sizeof(lao_v4));
+    memcpy(c->uv_before, c->uv, n * sizeof(lao_v4));
+}
+
+static void same_image(const char *name, const render_result *a, const render_result *b) {
+    const render_image *x = render_find(a, name, 0), *y = render_find(b, name, 0);
+    assert_true(x && y);
+    assert_int_equal(render_compare(name, x, y).texels, 0);
+}
+
+/* Frames of these cameras on both devices; `last` holds the last one afterwards. */
+static void check(scene *s, const lao_camera *cameras, uint32_t count, screen *last) {
+    for (uint32_t frame = 0; frame < count; frame++) {
+        render_result results[2];
+        s->shot.before = cameras;
+        s->shot.before_count = frame;
+        s->shot.camera = cameras[frame];
+        for (int i = 0; i < 2; i++) {
+            render_need(&devices[i]);
+            render_draw(&devices[i], &s->shot, &results[i]);
+        }
+        same_image("shaded", &results[0], &results[1]);
+        same_image("zbuffer", &results[0], &results[1]);
+        same_image("vessel_surface", &results[0], &results[1]);
+        if (s->vessel.parameterization > 1)
+            same_image("vessel_uv", &results[0], &results[1]);
+        check_frame(s, &results[0], last);
+        render_free(&results[0]);
+        render_free(&results[1]);
+    }
+}
+
+static void checked(scene *s, const subject *tree, const lao_camera *cameras, uint32_t count) {
+    screen c;
+    screen_of(s, tree, &c);
+    check(s, cameras, count, &c);
+    screen_free(&c);
+}
+
+/* ---------------------------------------------------------------------------------------- tests */
+
+static void still_frames(void **state) {
+    subject tree;
+    scene s;
+    (void)state;
+    subject_make(&tree, 60, 1);
+    for (int kind = 0; kind < 5; kind++) {
+        scene_make(&s, &tree);
+        if (kind == 1) {
+            s.vessel.guide = SDV_GUIDE_AXIS;
+            s.vessel.set |= SDV_SET(guide_threshold); /* 0: every slope is a contour */
+            s.vessel.style = SDV_STYLE_STIPPLE;
+            s.vessel.void_style = SDV_VOID_HATCH;
+        }
+        if (kind == 2) {
+            render_orthographic(&s.shot.camera, 30, (double)WIDTH / HEIGHT, 1, 200);
+            render_reverse(&s.shot.camera);
+            s.vessel.ssp_sweeps = 3;
+            s.vessel.style = SDV_STYLE_LAYERED;
+            s.vessel.void_style = SDV_VOID_CHROMADEPTH;
+        }
+        if (kind == 3) {
+            s.vessel.set |= SDV_SET(ssp_sweeps) | SDV_SET(guide_threshold);
+            s.vessel.style = SDV_STYLE_CROSSHATCH;
+            s.vessel.void_style = SDV_VOID_STIPPLE;
+        }
+        if (kind == 4) {
+            s.vessel.parameterization = 1;
+            s.vessel.void_style = SDV_VOID_CHROMADEPTH;
+        }
+        checked(&s, &tree, &s.shot.camera, 1);
+    }
+    subject_free(&tree);
+}
+
+/* An image of nothing: the void is a plane beyond the far end, and nothing is no number. */
+static void empty_picture(void **state) {
+    subject tree;
+    scene s;
+    screen c;
+    lao_camera away[2];
+    (void)state;
+    subject_make(&tree, 60, 1);
+    scene_make(&s, &tree);
+    away[0] = s.shot.camera;
+    render_shift(&away[0], 30, 0);
+    away[1] = s.shot.camera;
+    screen_of(&s, &tree, &c);
+    check(&s, away, 1, &c);
+    for (uint32_t i = 0; i < WIDTH * HEIGHT; i++) {
+        float z = sdv_empty_depth(c.frame.depth);
+        assert_true(fabsf(sdv_depth_of(c.frame.view, lao_v3_make(c.surface[i].x, c.surface[i].y,
+                                                                 c.surface[i].z)) -
+                          z) < 1e-4f * z);
+        assert_true(c.uv[i].x == c.uv[i].x && c.uv[i].w == c.uv[i].w);
+    }
+    screen_free(&c);
+    checked(&s, &tree, away, 2); /* and into view */
+    subject_free(&tree);
+}
+
+/* A camera that moves, rests, and rests with the solution going on. */
+static void frames(void **state) {
+    subject tree;
+    scene s;
+    screen c;
+    lao_camera cameras[4];
+    lao_v4 *before = malloc(WIDTH * HEIGHT * sizeof *before);
+    uint32_t changed = 0;
+    (void)state;
+    assert_non_null(before);
+    subject_make(&tree, 60, 1);
+    for (int converge = 0; converge < 2; converge++) {
+        scene_make(&s, &tree);
+        for (int i = 0; i < 4; i++) {
+            double angle = 0.02 * (i < 2 ? i : 2);
+            cameras[i] = render_camera(0.3 + angle, 0.5, 0.8 - angle, 45);
+            render_perspective(&cameras[i], 40, (double)WIDTH / HEIGHT, 1, 200);
+        }
+        s.vessel.ssp_converge = (float)converge;
+        screen_of(&s, &tree, &c);
+        check(&s, cameras, 3, &c);
+        memcpy(before, c.uv, WIDTH * HEIGHT * sizeof *before);
+        screen_free(&c);
+        screen_of(&s, &tree, &c);
+        check(&s, cameras, 4, &c);
+        for (uint32_t i = 0; i < WIDTH * HEIGHT; i++)
+            changed += memcmp(&before[i], &c.uv[i], sizeof *before) != 0;
+        if (converge)
+            assert_true(changed > WIDTH * HEIGHT / 4);
+        else
+            assert_int_equal(changed, 0);
+        screen_free(&c);
+    }
+    free(before);
+    subject_free(&tree);
+}
+
+/* Two trees in a view: the images are the last one's, and it recalls nothing of the other's. */
+static void two_trees(void **state) {
+    subject a, b;
+    scene s;
+    screen c;
+    lao_camera cameras[2];
+    (void)state;
+    subject_make(&a, 60, 1);
+    subject_make(&b, 60, 9);
+    scene_make(&s, &a);
+    s.shot.set_count = 2;
+    s.shot.objects[1] = &b.object.desc;
+    s.shot.settings[1] = &s.lines;
+    s.shot.module_settings[1] = s.settings;
+    s.vessel.void_style = SDV_VOID_HATCH;
+    cameras[0] = cameras[1] = s.shot.camera;
+    screen_of(&s, &b, &c);
+    c.set = 1;
+    check(&s, cameras, 2, &c);
+    for (uint32_t i = 0; i < WIDTH * HEIGHT; i++) {
+        assert_true(fabsf(c.surface[i].w) == 1.5f * 4096);
+        assert_true(c.surface[i].w < 0 || c.recalled[0][i].w == 1);
+    }
+    screen_free(&c);
+    subject_free(&a);
+    subject_free(&b);
+}
+
+static int open_all(void **state) {
+    (void)state;
+    modules[0] = sdv_module();
+    render_modules(modules, 1);
+    render_open_gl(&devices[0], NULL);
+    render_open_vk(&devices[1], 0);
+    return 0;
+}
+
+static int close_all(void **state) {
+    (void)state;
+    render_close(&devices[0]);
+    render_close(&devices[1]);
+    return 0;
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(still_frames),
+        cmocka_unit_test(empty_picture),
+        cmocka_unit_test(frames),
+        cmocka_unit_test(two_trees),
+    };
+    return cmocka_run_group_tests(tests, open_all, close_all);
+}

@@ -1,0 +1,76 @@
+/* A tree built to hurt, as an object: thick and thin, a child inside its parent, a lone ball, a
+ * radius of 0. */
+#ifndef VESSEL_SUBJECT_H
+#define VESSEL_SUBJECT_H
+
+#include "render_host.h"
+#include "sdfvessel.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+typedef struct subject {
+    sdv_tree tree;
+    sdv_grid grid;
+    sdv_object object;
+    uint8_t *colors;
+} subject;
+
+static uint32_t random_of(uint32_t *state) {
+    *state = *state * 747796405u + 2891336453u;
+    return *state >> 8;
+}
+
+static float between(uint32_t *state, float low, float high) {
+    return low + (high - low) * (float)random_of(state) / 16777216.0f;
+}
+
+static void subject_make(subject *s, uint32_t nodes, uint32_t seed) {
+    float *positions = calloc(nodes, 3 * sizeof(float)), *radii = calloc(nodes, sizeof(float));
+    sdv_segment *segments = calloc(nodes, sizeof *segments);
+    uint32_t count = 0;
+    sdv_tree_desc desc;
+    sdv_grid_desc grid;
+    memset(s, 0, sizeof *s);
+    memset(&desc, 0, sizeof desc);
+    memset(&grid, 0, sizeof grid);
+    assert_true(positions && radii && segments);
+    for (uint32_t i = 0; i < nodes; i++) {
+        uint32_t parent = i ? random_of(&seed) % i : 0;
+        for (uint32_t k = 0; k < 3; k++) {
+            positions[3 * i + k] = i ? positions[3 * parent + k] + between(&seed, -6, 6) : 0.0f;
+        }
+        radii[i] = i % 11 == 5 ? 0.0f : between(&seed, 0.05f, i % 7 == 0 ? 3.0f : 0.6f);
+        if (i && i != nodes - 1) { /* the last one is a lone ball */
+            segments[count].parent = parent;
+            segments[count++].child = i;
+        }
+    }
+    radii[0] = 2;
+    desc.node_count = nodes;
+    desc.positions = positions;
+    desc.radii = radii;
+    desc.segment_count = count;
+    desc.segments = segments;
+    grid.resolution = 40;
+    assert_int_equal(sdv_tree_build(NULL, &desc, &s->tree), LAO_OK);
+    assert_int_equal(sdv_grid_build(NULL, &s->tree, &grid, &s->grid), LAO_OK);
+    s->colors = malloc(8 * (size_t)s->grid.cone_count);
+    assert_non_null(s->colors);
+    for (uint32_t i = 0; i < 8 * s->grid.cone_count; i++) {
+        s->colors[i] = (uint8_t)random_of(&seed);
+    }
+    assert_int_equal(sdv_object_make(NULL, &s->grid, s->colors, &s->object), LAO_OK);
+    free(positions);
+    free(radii);
+    free(segments);
+}
+
+static void subject_free(subject *s) {
+    sdv_object_free(&s->object);
+    sdv_grid_free(&s->grid);
+    sdv_tree_free(&s->tree);
+    free(s->colors);
+}
+
+#endif
