@@ -296,6 +296,7 @@ static void test_path(void **state) {
 static void test_no_gpu(void **state) {
     (void)state;
     setenv("VK_ICD_FILENAMES", "/nowhere.json", 1);
+    setenv("VK_DRIVER_FILES", "/nowhere.json", 1); /* the newer name, which wins */
     expect_ok(RUN("vessel --nodes 200 --layout l.json --backend vk"));
     program_run run = RUN("vessel --nodes 200 " SMALL "-o never.png --backend vk");
     assert_int_equal(run.code, 1);
