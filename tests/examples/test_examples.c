@@ -143,7 +143,7 @@ static const place orthographic[] = {
     {260, 180, 'R', "the red box hides the bundle behind it"},
     {390, 170, 'L', "the bundle behind, beside the red box"},
     {120, 125, 'L', "the bundle behind, on the other side"},
-    {215, 235, 'L', "the third bundle, outside of the red box"},
+    {213, 232, 'L', "the third bundle, outside of the red box"},
     {270, 190, 'R', "the third bundle, inside of the red box"},
     {460, 260, 'G', "the late box, above the front bundle"},
     {460, 320, 'L', "the front bundle hides the late box"},
