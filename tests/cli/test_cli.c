@@ -358,6 +358,7 @@ static void test_videos(void **state) {
     struct stat status;
     (void)state;
     mkdir("bin", 0755);
+    remove("bin/ffmpeg"); /* of an earlier run */
     assert_true(snprintf(path, sizeof path, "%s/bin", here) < (int)sizeof path);
     setenv("PATH", path, 1);
     expect_fault(RUN("render " PLAIN "--frames 2 -o film.mp4"), 1,
