@@ -1721,7 +1721,9 @@ LAO_FN float lao_rim_union(float s, lao_v2 neighbour) {
 }
 /* 0 in the middle of a line, 1 at its outline. */
 LAO_FN float lao_rim(lao_v3 rim) {
-    return lao_min(lao_max(lao_abs(rim.x), lao_max(rim.y, rim.z)), 1.0f);
+    float s = lao_abs(rim.x);
+    s = rim.y > s ? rim.y : s;
+    return rim.z > s ? rim.z : s;
 }
 /* Where the border begins. */
 LAO_FN float lao_halo_begin(float width, lao_int halo) {
@@ -1759,7 +1761,9 @@ LAO_FN float lao_window_depth(lao_v4 unproject, float z) {
 /* Depth buffer value of a fragment moved back to view depth z, reversed or not: never so far that
    the cleared buffer would hide it. */
 LAO_FN float lao_halo_depth(lao_v4 unproject, float z) {
-    return lao_min(lao_max(lao_window_depth(unproject, z), 1.0e-30f), 0.99999994f);
+    float d = lao_window_depth(unproject, z);
+    d = d < 0.99999994f ? d : 0.99999994f;
+    return d > 1.0e-30f ? d : 1.0e-30f;
 }
 
 /* ---- trails (METHODS 2.7, 9.1; Koehler 2017, 4.1; Lawonn 2014, 5.2) */
