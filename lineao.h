@@ -271,7 +271,8 @@ typedef enum lao_repeat {
 } lao_repeat;
 typedef enum lao_scope {
     LAO_SCOPE_FRAME,
-    LAO_SCOPE_PER_SET /* consecutive rows replay for each set */
+    LAO_SCOPE_PER_SET /* consecutive rows replay for each set; those that compose, behind all sets'
+                         shading */
 } lao_scope;
 /* Rows of all modules run stage by stage; within a stage in order of modules and rows. */
 typedef enum lao_stage {
@@ -3351,7 +3352,7 @@ static void lao__plan_pass(lao__planner *p, uint32_t pass, uint32_t set) {
    comes after drawing runs once, by the first set's settings. */
 static void lao__plan_sets(lao__planner *p, uint32_t first, uint32_t end) {
     uint32_t i, set;
-    if (!p->desc->shared_occlusion) {
+    if (!p->desc->shared_occlusion || p->graph->passes[first]->stage == LAO_STAGE_COMPOSE) {
         for (set = 0; set < p->desc->set_count; set++) {
             for (i = first; i < end; i++) {
                 lao__plan_pass(p, i, set);
@@ -3519,7 +3520,10 @@ lao_result lao_plan_make(const lao_graph *graph, const lao_plan_desc *desc,
             lao__plan_pass(&p, pass, 0);
             continue;
         }
-        while (end < graph->pass_count && graph->passes[end]->scope == LAO_SCOPE_PER_SET) {
+        /* composing begins when all sets are shaded */
+        while (end < graph->pass_count && graph->passes[end]->scope == LAO_SCOPE_PER_SET &&
+               (graph->passes[end]->stage < LAO_STAGE_COMPOSE ||
+                graph->passes[end]->stage == graph->passes[pass]->stage)) {
             end++;
         }
         lao__plan_sets(&p, pass, end);

@@ -403,6 +403,106 @@ VSF_API lao_result vsf_near_exact(const vsf_host *host, const vsf_near *table, d
 VSF_API double vsf_segment_distance2(const float p[3], const float a[3], const float b[3],
                                      double from, double to);
 
+/* ------------------------------------------------------------------------------------------------
+   the module: passes of surfaces for lao_desc.modules */
+
+/* X(name, TYPE, minimum, maximum, default, structural, unit, choices, help) */
+#define VSF_SETTINGS(X)                                                                            \
+    X(shading, ENUM, 0, 2, 0, 1, "", "adaptive|transparent|fresnel",                               \
+      "front faces: the look-up by shape and flow (L14), alike everywhere, or by angle")           \
+    X(brightness, FLOAT, 0, 1e6f, 1.5f, 0, "mm", "",                                               \
+      "adaptive: opacity and colour per curvature; more shows more shape and hides more (c)")      \
+    X(blend, ENUM, 0, 1, 0, 1, "", "over|add",                                                     \
+      "how front faces join what is behind them: cover it, or add light")                          \
+    X(opacity, FLOAT, 0, 1, 0.4f, 0, "", "", "transparent: opacity of front faces")                \
+    X(falloff, FLOAT, 0.01f, 100, 1.5f, 0, "", "", "fresnel: edge fall-off (r)")                   \
+    X(falloff_form, ENUM, 0, 1, 0, 1, "", "paper|rim",                                             \
+      "fresnel: 1 - |n.v|^r, more opaque for larger r; or (1 - |n.v|)^r, less")                    \
+    X(layers, INT, 0, 31, 7, 1, "", "",                                                            \
+      "front faces drawn behind the nearest one, exactly, where surfaces overlap")                 \
+    X(near_source, ENUM, 0, 1, 0, 1, "", "distance|value",                                         \
+      "what shifts the hue: distance to lit lines, or the values of the vertices")                 \
+    X(near_gamma, FLOAT, 0, 1e6f, 0, 0, "mm", "",                                                  \
+      "distance at which lit lines stop to matter; 0: none is near (gamma)")                       \
+    X(near_part, FLOAT, 0, 1, 0, 0, "", "",                                                        \
+      "where the time is between the two steps of the distances")                                  \
+    X(near_steps, INT, 1, 100000, 100, 0, "", "",                                                  \
+      "times of the table of distances; for the program that makes it (K)")                        \
+    X(value_low, FLOAT, -1e30f, 1e30f, 0, 0, "", "", "value whose hue is that of far")             \
+    X(value_high, FLOAT, -1e30f, 1e30f, 1, 0, "", "", "value whose hue is that of near")           \
+    X(wall_red, FLOAT, 0, 1, 0.86f, 0, "", "", "colour of back faces, and of the baselines")       \
+    X(wall_green, FLOAT, 0, 1, 0.81f, 0, "", "", "its green")                                      \
+    X(wall_blue, FLOAT, 0, 1, 0.76f, 0, "", "", "its blue")                                        \
+    X(wall_ambient, FLOAT, 0, 1, 0.45f, 0, "", "", "light on the wall from everywhere")            \
+    X(wall_diffuse, FLOAT, 0, 2, 0.55f, 0, "", "", "light on the wall from the viewer")            \
+    X(depth_shadow, BOOL, 0, 1, 0, 1, "", "",                                                      \
+      "darken what lies close behind something nearer (Luft 2006)")                                \
+    X(depth_shadow_strength, FLOAT, 0, 100, 2, 0, "", "", "of the depth shadow (lambda)")          \
+    X(depth_shadow_width, FLOAT, 0.01f, 5, 2, 0, "%", "",                                          \
+      "of the depth shadow: sigma, of the picture's diagonal")                                     \
+    X(focus, BOOL, 0, 1, 0, 1, "", "", "blur what is not between focus_near and focus_far")        \
+    X(focus_near, FLOAT, -1e9f, 1e9f, 0, 0, "mm", "", "depth from the eye where focus begins")     \
+    X(focus_far, FLOAT, -1e9f, 1e9f, 1e9f, 0, "mm", "", "depth from the eye where focus ends")     \
+    X(focus_growth, FLOAT, 0, 100, 0.2f, 0, "px/mm", "", "blur per distance from focus")           \
+    X(focus_blur, FLOAT, 0, 32, 8, 0, "px", "", "widest blur")                                     \
+    X(attenuation, BOOL, 0, 1, 0, 1, "", "", "let the scene fade with depth")                      \
+    X(attenuation_strength, FLOAT, 0, 1, 0.5f, 0, "", "", "how much of the farthest is gone")      \
+    X(surface_geometry, BOOL, 0, 1, 0, 1, "", "",                                                  \
+      "keep position, normal, measure and look-up of the nearest front face as images")
+
+/* What a surface looks like; as lao_settings: zero is the default unless its bit is set. Depth
+   shadow, focus and attenuation are those of the frame's first set, which must have a surface. */
+typedef struct vsf_settings {
+    uint64_t set;
+#define VSF__FIELD(name, type, minimum, maximum, standard, structural, unit, choices, help)        \
+    float name;
+    VSF_SETTINGS(VSF__FIELD)
+#undef VSF__FIELD
+} vsf_settings;
+
+typedef enum vsf_setting {
+#define VSF__ENUM(name, type, minimum, maximum, standard, structural, unit, choices, help)         \
+    VSF_SETTING_ID_##name,
+    VSF_SETTINGS(VSF__ENUM)
+#undef VSF__ENUM
+        VSF_SETTING_COUNT
+} vsf_setting;
+#define VSF_SET(name) ((uint64_t)1 << VSF_SETTING_ID_##name)
+
+/* Passes, images and settings that draw ghosted surfaces around a scene's lines: back faces opaque,
+   front faces over everything that is behind them. Nested surfaces are exact in one object (a mesh
+   of several parts); objects are composed in the order of their sets. Static. Thread: any. */
+VSF_API const lao_module *vsf_module(void);
+
+/* A mesh as the object of a set. `desc` refers to the struct itself: it must not move. `near` and
+   `values` may be filled by the host before lao_object_create or _update. */
+typedef struct vsf_object {
+    lao_object_desc desc; /* all buffers */
+    lao_object_buffer list[6];
+    vsf_buffers buffers;
+    float *near_pair;        /* 2 per vertex, mm: distances at two steps; VSF_FAR at first */
+    float *values;           /* 1 per vertex; 0 at first */
+    uint32_t step;           /* of near_pair; VSF_NONE at first */
+    lao_allocator allocator; /* private */
+} vsf_object;
+
+/* Describes a mesh for lao_object_create, with copies of all it needs. `max_texels` as for
+   vsf_buffers_make. Free with vsf_object_free, fine on an all-zero one, once lao_object_create has
+   returned and no update will come. Fails with NULL_ARGUMENT, MEMORY, CANCELLED, MESH_DEVICE. */
+VSF_API lao_result vsf_object_make(const vsf_host *host, const vsf_mesh *mesh, uint32_t max_texels,
+                                   vsf_object *object);
+VSF_API void vsf_object_free(vsf_object *object);
+/* The setting `layers` that shows all there is of a mesh seen from outside: in closed parts that do
+   not cut themselves every further front face lies behind an opaque back face, unless parts are
+   nested (single pixels of silhouettes apart, by rounding). Open meshes: the default. Each layer
+   costs a drawing of the mesh. Thread: any. */
+VSF_API uint32_t vsf_mesh_layers(const vsf_mesh *mesh);
+/* Shows a time (ms): sets near_part and near_gamma, and fills near_pair where the time is between
+   other steps than before. Then it returns 1, and `update` is what lao_object_update needs: the
+   distances alone. Otherwise 0, nothing to upload. `table` is of the object's vertices. */
+VSF_API int vsf_object_time(vsf_object *object, const vsf_near *table, double time,
+                            vsf_settings *settings, lao_object_desc *update);
+
 #ifdef __cplusplus
 }
 #endif
@@ -640,6 +740,110 @@ LAO_FN lao_v3 vsf_unsharp(lao_v3 color, float depth, float blurred, float streng
     LAO_EXACT float y = color.y + shade;
     LAO_EXACT float z = color.z + shade;
     return lao_v3_make(lao_max(x, 0.0f), lao_max(y, 0.0f), lao_max(z, 0.0f));
+}
+
+/* ---- what the passes are made of */
+#define VSF_SHADING_ADAPTIVE 0
+#define VSF_SHADING_TRANSPARENT 1
+#define VSF_SHADING_FRESNEL 2
+#define VSF_FALLOFF_PAPER 0
+#define VSF_FALLOFF_RIM 1
+#define VSF_BLEND_OVER 0
+#define VSF_BLEND_ADD 1
+#define VSF_NEAR_DISTANCE 0
+#define VSF_NEAR_VALUE 1
+/* x of a value between the two that are 0 and 1; 0 for no number */
+LAO_FN float vsf_value_x(float value, float low, float high) {
+    LAO_EXACT float x = (value - low) / (high - low);
+    return x > 0.0f ? lao_min(x, 1.0f) : 0.0f;
+}
+/* A wall under a head light, whichever side is seen. */
+LAO_FN lao_v3 vsf_wall(lao_v3 color, float n_dot_v, float ambient, float diffuse) {
+    LAO_EXACT float light = ambient + diffuse * lao_abs(n_dot_v);
+    lao_v3 c = lao_v3_scale(color, light);
+    return lao_v3_make(lao_clamp01(c.x), lao_clamp01(c.y), lao_clamp01(c.z));
+}
+/* View depth (mm) of a depth buffer's value d. */
+LAO_FN float vsf_view_depth(lao_v4 unproject, float d) {
+    LAO_EXACT float z = (unproject.x + unproject.y * d) / (unproject.z + unproject.w * d);
+    return z;
+}
+/* The nearer of two depth buffer values. */
+LAO_FN float vsf_nearer(float a, float b, float reversed) {
+    return reversed > 0.5f ? lao_max(a, b) : lao_min(a, b);
+}
+/* Is depth buffer value a in front of b? */
+LAO_FN bool vsf_in_front(float a, float b, float reversed) {
+    return reversed > 0.5f ? a > b : a < b;
+}
+/* Has anything been drawn there? */
+LAO_FN bool vsf_is_covered(float d, float reversed) {
+    return reversed > 0.5f ? d > 0.0f : d < 1.0f;
+}
+/* Depths of what is covered: their sum over their weight; `otherwise` where there are none. */
+LAO_FN float vsf_covered_mean(float sum, float weight, float otherwise) {
+    LAO_EXACT float mean = sum / weight;
+    return weight > 1.0e-12f ? mean : otherwise;
+}
+/* A premultiplied colour times a number. */
+LAO_FN lao_v4 vsf_scaled(lao_v4 color, float s) {
+    LAO_EXACT float x = color.x * s;
+    LAO_EXACT float y = color.y * s;
+    LAO_EXACT float z = color.z * s;
+    LAO_EXACT float w = color.w * s;
+    return lao_v4_make(x, y, z, w);
+}
+/* sum + color weight */
+LAO_FN lao_v4 vsf_sum(lao_v4 sum, lao_v4 color, float weight) {
+    LAO_EXACT float x = sum.x + color.x * weight;
+    LAO_EXACT float y = sum.y + color.y * weight;
+    LAO_EXACT float z = sum.z + color.z * weight;
+    LAO_EXACT float w = sum.w + color.w * weight;
+    return lao_v4_make(x, y, z, w);
+}
+LAO_FN lao_v4 vsf_mix(lao_v4 a, lao_v4 b, float t) {
+    LAO_EXACT float s = 1.0f - t;
+    return vsf_sum(vsf_scaled(a, s), b, t);
+}
+
+/* The shadow's blurred depth is made at a quarter of the view's size: a texel for 4 x 4 pixels. */
+#define VSF_SHADOW_PIXELS 4.0f
+#define VSF_SHADOW_LEVEL 2u
+#define VSF_SHADOW_REACH 160 /* most texels to either side */
+/* Width of its Gaussian in those texels; `width` in parts of the view's diagonal (px). */
+LAO_FN float vsf_shadow_sigma(float width, float view_width, float view_height) {
+    LAO_EXACT float diagonal = lao_sqrt(view_width * view_width + view_height * view_height);
+    LAO_EXACT float sigma = width * diagonal / VSF_SHADOW_PIXELS;
+    return sigma;
+}
+/* Three sigmas, in whole texels or pixels. */
+LAO_FN lao_int vsf_reach(float sigma, lao_int most) {
+    LAO_EXACT float reach = lao_floor(VSF_BLUR_REACH * sigma);
+    return reach < LAO_F(most) ? LAO_I(reach) : most;
+}
+/* Where a sample's centre lies between texels that cover `samples` of it: x, and the texel before
+   it (whole, may be -1). */
+LAO_FN lao_v2 vsf_between(float sample_index, float samples) {
+    LAO_EXACT float at = (sample_index + 0.5f) / samples - 0.5f;
+    LAO_EXACT float before = lao_floor(at);
+    return lao_v2_make(at - before, before);
+}
+LAO_FN float vsf_bilinear(float a, float b, float c, float d, float x, float y) {
+    LAO_EXACT float low = a + (b - a) * x;
+    LAO_EXACT float high = c + (d - c) * x;
+    LAO_EXACT float r = low + (high - low) * y;
+    return r;
+}
+/* The unsharp shadow of a premultiplied colour. */
+LAO_FN lao_v4 vsf_shadowed(lao_v4 color, float depth, float blurred, float strength) {
+    LAO_EXACT float s = strength * color.w;
+    lao_v3 c = vsf_unsharp(lao_v3_make(color.x, color.y, color.z), depth, blurred, s);
+    return lao_v4_make(c.x, c.y, c.z, color.w);
+}
+/* A premultiplied colour that fades with depth (0..1). */
+LAO_FN lao_v4 vsf_attenuated(lao_v4 color, float depth, float strength) {
+    LAO_EXACT float keep = 1.0f - strength * depth;
+    return vsf_scaled(color, lao_clamp01(keep));
 }
 /* VSF_SHARED_END */
 
@@ -3660,6 +3864,186 @@ VSF_API lao_result vsf_near_exact(const vsf_host *host, const vsf_near *table, d
     query.out = distances;
     progress = vsf__progress_make(host, n.vertex_count);
     return vsf__near_time(&progress, &n, time, &query, &lit);
+}
+
+/* ================================================================================================
+ * the module */
+// clang-format off
+#define VSF__WRITE(image) {image, LAO_LEVEL_SAME, 0, LAO_PHASE_THIS, LAO_LOAD_DISCARD}
+#define VSF__READ(image) {image, LAO_LEVEL_SAME, 0, LAO_PHASE_THIS, LAO_LOAD_DISCARD}
+#define VSF__OTHER(image) {image, LAO_LEVEL_SAME, 0, LAO_PHASE_OTHER, LAO_LOAD_DISCARD}
+#define VSF__CLEAR(image) {image, LAO_LEVEL_SAME, 0, LAO_PHASE_THIS, LAO_LOAD_CLEAR}
+#define VSF__KEEP(image) {image, LAO_LEVEL_SAME, 0, LAO_PHASE_THIS, LAO_LOAD_KEEP}
+#define VSF__SMALL(image) {image, LAO_LEVEL_INDEX, VSF_SHADOW_LEVEL, LAO_PHASE_THIS, LAO_LOAD_DISCARD}
+#define VSF__SURFACE {"#surface_points", '>', 0}
+#define VSF__ANY {NULL, 0, 0}
+#define VSF__MESH VSF__READ("#surface_points"), VSF__READ("#surface_normals"), VSF__READ("#surface_triangles")
+#define VSF__FRONT VSF__MESH, VSF__READ("#surface_near"), VSF__READ("#surface_values"), VSF__READ("surface_measure"), VSF__READ("zbuffer")
+#define VSF__PLAIN(format, size) format, size, 0, 0, NULL, 0, LAO_ENCODING_PLAIN
+
+static const lao_image_row vsf__images[] = {
+    /* 1/mm, one texel per vertex */
+    {"surface_measure",  VSF__PLAIN(LAO_FORMAT_R32F, LAO_SIZE_ITEMS),   {0, 0, 0, 0}, VSF__ANY, {NULL, NULL, NULL, NULL}},
+    /* front faces, premultiplied: those composed so far, and the next one */
+    {"surface_over",     VSF__PLAIN(LAO_FORMAT_RGBA16F, LAO_SIZE_FULL), {0, 0, 0, 0}, VSF__ANY, {NULL, NULL, NULL, NULL}},
+    {"surface_layer",    VSF__PLAIN(LAO_FORMAT_RGBA16F, LAO_SIZE_FULL), {0, 0, 0, 0}, {"layers", '>', 0}, {NULL, NULL, NULL, NULL}},
+    {"surface_z",        VSF__PLAIN(LAO_FORMAT_D32F, LAO_SIZE_FULL),    {1, 0, 0, 0}, VSF__ANY, {NULL, NULL, NULL, NULL}},
+    /* the nearest front faces of all sets, for the effects */
+    {"surface_nearest",  VSF__PLAIN(LAO_FORMAT_D32F, LAO_SIZE_FULL),    {1, 0, 0, 0}, VSF__ANY, {NULL, NULL, NULL, NULL}},
+    {"surface_position", VSF__PLAIN(LAO_FORMAT_RGBA32F, LAO_SIZE_FULL), {0, 0, 0, 0}, {"surface_geometry", '=', 1}, {"position.X", "position.Y", "position.Z", "mask.V"}},
+    {"surface_normal",   VSF__PLAIN(LAO_FORMAT_RGBA32F, LAO_SIZE_FULL), {0, 0, 0, 0}, {"surface_geometry", '=', 1}, {"normal.X", "normal.Y", "normal.Z", "measure.V"}},
+    {"surface_lut",      VSF__PLAIN(LAO_FORMAT_RGBA32F, LAO_SIZE_FULL), {0, 0, 0, 0}, {"surface_geometry", '=', 1}, {"lut.R", "lut.G", "lut.B", "near.V"}},
+    /* depth shadow: depths of what is covered at a quarter of the view's size (sum, weight), blurred along x, then y */
+    {"shadow_depth",     LAO_FORMAT_RGBA32F, LAO_SIZE_VIEW, 0, 0, "*", 0, LAO_ENCODING_PLAIN, {0, 0, 0, 0}, {"depth_shadow", '=', 1}, {NULL, NULL, NULL, NULL}},
+    {"shadow_x",         LAO_FORMAT_RGBA32F, LAO_SIZE_VIEW, 0, 0, "*", 0, LAO_ENCODING_PLAIN, {0, 0, 0, 0}, {"depth_shadow", '=', 1}, {NULL, NULL, NULL, NULL}},
+    {"shadow_blurred",   LAO_FORMAT_RGBA32F, LAO_SIZE_VIEW, 0, 0, "*", 0, LAO_ENCODING_PLAIN, {0, 0, 0, 0}, {"depth_shadow", '=', 1}, {NULL, NULL, NULL, NULL}},
+    /* focus: what is out of focus in a pixel and its depth (mm), blurred along x, then along y */
+    {"focus_color",      VSF__PLAIN(LAO_FORMAT_RGBA32F, LAO_SIZE_VIEW), {0, 0, 0, 0}, {"focus", '=', 1}, {NULL, NULL, NULL, NULL}},
+    {"focus_depth",      VSF__PLAIN(LAO_FORMAT_R32F, LAO_SIZE_VIEW),    {0, 0, 0, 0}, {"focus", '=', 1}, {NULL, NULL, NULL, NULL}},
+    {"focus_x",          VSF__PLAIN(LAO_FORMAT_RGBA32F, LAO_SIZE_VIEW), {0, 0, 0, 0}, {"focus", '=', 1}, {NULL, NULL, NULL, NULL}},
+    {"focus_blurred",    VSF__PLAIN(LAO_FORMAT_RGBA32F, LAO_SIZE_VIEW), {0, 0, 0, 0}, {"focus", '=', 1}, {NULL, NULL, NULL, NULL}}
+};
+
+static const lao_pass_row vsf__passes[] = {
+    /* back faces, opaque, among the scene: lines and they hide each other by depth */
+    {"surface_back", LAO_PASS_DRAW_MESH, "surface_mesh", 0, LAO_STAGE_SHADE, LAO_SCOPE_PER_SET, LAO_REPEAT_NONE, NULL, LAO_BLEND_NONE, LAO_DEPTH_NEARER, LAO_CULL_FRONT, {VSF__SURFACE},
+     {VSF__KEEP("shaded"), VSF__KEEP("zbuffer")}, {VSF__MESH}},
+    {"surface_measure", LAO_PASS_FULLSCREEN, "surface_measure", 0, LAO_STAGE_COMPOSE, LAO_SCOPE_PER_SET, LAO_REPEAT_NONE, NULL, LAO_BLEND_NONE, LAO_DEPTH_NONE, LAO_CULL_NONE, {VSF__SURFACE},
+     {VSF__WRITE("surface_measure")}, {VSF__READ("#surface_points"), VSF__READ("#surface_normals"), VSF__READ("#surface_rings")}},
+    /* the nearest front face, then peel by peel those behind it, and all of them over the scene */
+    {"surface_front", LAO_PASS_DRAW_MESH, "surface_mesh", 1, LAO_STAGE_COMPOSE, LAO_SCOPE_PER_SET, LAO_REPEAT_NONE, NULL, LAO_BLEND_NONE, LAO_DEPTH_NEARER, LAO_CULL_BACK, {VSF__SURFACE},
+     {VSF__CLEAR("surface_over"), VSF__CLEAR("surface_position"), VSF__CLEAR("surface_normal"), VSF__CLEAR("surface_lut"), VSF__CLEAR("surface_z")}, {VSF__FRONT}},
+    {"surface_nearest", LAO_PASS_FULLSCREEN, "surface_nearest", 0, LAO_STAGE_COMPOSE, LAO_SCOPE_PER_SET, LAO_REPEAT_NONE, NULL, LAO_BLEND_NONE, LAO_DEPTH_NEARER, LAO_CULL_NONE, {VSF__SURFACE},
+     {VSF__KEEP("surface_nearest")}, {VSF__READ("surface_z")}},
+    {"surface_peel", LAO_PASS_DRAW_MESH, "surface_mesh", 2, LAO_STAGE_COMPOSE, LAO_SCOPE_PER_SET, LAO_REPEAT_COUNT, "layers", LAO_BLEND_NONE, LAO_DEPTH_NEARER, LAO_CULL_BACK, {VSF__SURFACE},
+     {VSF__CLEAR("surface_layer"), {"surface_z", LAO_LEVEL_SAME, 0, LAO_PHASE_OTHER, LAO_LOAD_CLEAR}}, {VSF__FRONT, VSF__READ("surface_z")}},
+    {"surface_under", LAO_PASS_FULLSCREEN, "surface_layers", 0, LAO_STAGE_COMPOSE, LAO_SCOPE_PER_SET, LAO_REPEAT_WITH_LAST, NULL, LAO_BLEND_NONE, LAO_DEPTH_NONE, LAO_CULL_NONE, {VSF__SURFACE},
+     {VSF__OTHER("surface_over")}, {VSF__READ("surface_over"), VSF__READ("surface_layer")}},
+    {"surface_over", LAO_PASS_FULLSCREEN, "surface_layers", 0, LAO_STAGE_COMPOSE, LAO_SCOPE_PER_SET, LAO_REPEAT_NONE, NULL, LAO_BLEND_NONE, LAO_DEPTH_NONE, LAO_CULL_NONE, {VSF__SURFACE},
+     {VSF__OTHER("shaded")}, {VSF__READ("surface_over"), VSF__READ("shaded")}},
+    /* effects of the whole picture */
+    {"shadow_depth", LAO_PASS_FULLSCREEN, "surface_shadow", 0, LAO_STAGE_COMPOSE, LAO_SCOPE_FRAME, LAO_REPEAT_NONE, NULL, LAO_BLEND_NONE, LAO_DEPTH_NONE, LAO_CULL_NONE, {VSF__SURFACE, {"depth_shadow", '=', 1}},
+     {VSF__SMALL("shadow_depth")}, {VSF__READ("zbuffer"), VSF__READ("surface_nearest")}},
+    {"shadow_x", LAO_PASS_FULLSCREEN, "surface_shadow", 1, LAO_STAGE_COMPOSE, LAO_SCOPE_FRAME, LAO_REPEAT_NONE, NULL, LAO_BLEND_NONE, LAO_DEPTH_NONE, LAO_CULL_NONE, {VSF__SURFACE, {"depth_shadow", '=', 1}},
+     {VSF__SMALL("shadow_x")}, {VSF__SMALL("shadow_depth")}},
+    {"shadow_y", LAO_PASS_FULLSCREEN, "surface_shadow", 2, LAO_STAGE_COMPOSE, LAO_SCOPE_FRAME, LAO_REPEAT_NONE, NULL, LAO_BLEND_NONE, LAO_DEPTH_NONE, LAO_CULL_NONE, {VSF__SURFACE, {"depth_shadow", '=', 1}},
+     {VSF__SMALL("shadow_blurred")}, {VSF__SMALL("shadow_x")}},
+    {"depth_shadow", LAO_PASS_FULLSCREEN, "surface_effect", 0, LAO_STAGE_COMPOSE, LAO_SCOPE_FRAME, LAO_REPEAT_NONE, NULL, LAO_BLEND_NONE, LAO_DEPTH_NONE, LAO_CULL_NONE, {VSF__SURFACE, {"depth_shadow", '=', 1}},
+     {VSF__OTHER("shaded")}, {VSF__READ("shaded"), VSF__READ("zbuffer"), VSF__READ("surface_nearest"), VSF__SMALL("shadow_blurred")}},
+    {"attenuation", LAO_PASS_FULLSCREEN, "surface_effect", 1, LAO_STAGE_COMPOSE, LAO_SCOPE_FRAME, LAO_REPEAT_NONE, NULL, LAO_BLEND_NONE, LAO_DEPTH_NONE, LAO_CULL_NONE, {VSF__SURFACE, {"attenuation", '=', 1}},
+     {VSF__OTHER("shaded")}, {VSF__READ("shaded"), VSF__READ("zbuffer"), VSF__READ("surface_nearest")}},
+    {"focus_pixels", LAO_PASS_FULLSCREEN, "surface_focus", 0, LAO_STAGE_COMPOSE, LAO_SCOPE_FRAME, LAO_REPEAT_NONE, NULL, LAO_BLEND_NONE, LAO_DEPTH_NONE, LAO_CULL_NONE, {VSF__SURFACE, {"focus", '=', 1}},
+     {VSF__WRITE("focus_color"), VSF__WRITE("focus_depth")}, {VSF__READ("shaded"), VSF__READ("zbuffer"), VSF__READ("surface_nearest")}},
+    {"focus_x", LAO_PASS_FULLSCREEN, "surface_blur", 0, LAO_STAGE_COMPOSE, LAO_SCOPE_FRAME, LAO_REPEAT_NONE, NULL, LAO_BLEND_NONE, LAO_DEPTH_NONE, LAO_CULL_NONE, {VSF__SURFACE, {"focus", '=', 1}},
+     {VSF__WRITE("focus_x")}, {VSF__READ("focus_color"), VSF__READ("focus_depth")}},
+    {"focus_y", LAO_PASS_FULLSCREEN, "surface_blur", 1, LAO_STAGE_COMPOSE, LAO_SCOPE_FRAME, LAO_REPEAT_NONE, NULL, LAO_BLEND_NONE, LAO_DEPTH_NONE, LAO_CULL_NONE, {VSF__SURFACE, {"focus", '=', 1}},
+     {VSF__WRITE("focus_blurred")}, {VSF__READ("focus_x"), VSF__READ("focus_depth")}},
+    {"focus", LAO_PASS_FULLSCREEN, "surface_effect", 2, LAO_STAGE_COMPOSE, LAO_SCOPE_FRAME, LAO_REPEAT_NONE, NULL, LAO_BLEND_NONE, LAO_DEPTH_NONE, LAO_CULL_NONE, {VSF__SURFACE, {"focus", '=', 1}},
+     {VSF__OTHER("shaded")}, {VSF__READ("shaded"), VSF__READ("zbuffer"), VSF__READ("surface_nearest"), VSF__READ("focus_blurred")}}
+};
+
+static const lao_setting_row vsf__settings[] = {
+#define VSF__ROW(name, type, minimum, maximum, standard, structural, unit, choices, help) \
+    {#name, LAO_SETTING_##type, minimum, maximum, standard, structural, unit, choices, help},
+    VSF_SETTINGS(VSF__ROW)
+#undef VSF__ROW
+};
+
+static const lao_module vsf__module = {
+    "surface",
+    vsf__passes, (uint32_t)(sizeof vsf__passes / sizeof vsf__passes[0]),
+    vsf__images, (uint32_t)(sizeof vsf__images / sizeof vsf__images[0]),
+    vsf__settings, (uint32_t)(sizeof vsf__settings / sizeof vsf__settings[0]),
+    NULL, 0, NULL, 0,
+    vsf__buffer_rows, (uint32_t)(sizeof vsf__buffer_rows / sizeof vsf__buffer_rows[0])
+};
+// clang-format on
+
+VSF_API const lao_module *vsf_module(void) {
+    return &vsf__module;
+}
+
+static void vsf__object_extra(vsf_object *object, uint32_t index, const float *data,
+                              uint32_t count) {
+    object->list[index].name = vsf__buffer_rows[index].name;
+    object->list[index].data = data;
+    object->list[index].texel_count = count;
+}
+
+VSF_API lao_result vsf_object_make(const vsf_host *host, const vsf_mesh *mesh, uint32_t max_texels,
+                                   vsf_object *object) {
+    lao_allocator a = vsf__allocator(host);
+    vsf_buffers buffers;
+    lao_result result;
+    float *extra;
+    uint32_t n, i;
+    if (!mesh || !object) {
+        return vsf__fail(host, VSF_LOG_NULL_ARGUMENT, "vsf_object_make");
+    }
+    result = vsf_buffers_make(host, mesh, max_texels, &buffers);
+    if (result != LAO_OK) {
+        return result;
+    }
+    n = buffers.vertex_count;
+    if (max_texels && 2 * n > max_texels) {
+        vsf_buffers_free(&buffers);
+        return vsf__fail(host, VSF_LOG_MESH_DEVICE,
+                         "distances of %u vertices need %u texels, the device has %u", n, 2 * n,
+                         max_texels);
+    }
+    extra = (float *)vsf__take(&a, 3 * (uint64_t)n, sizeof *extra);
+    if (!extra) {
+        vsf_buffers_free(&buffers);
+        return vsf__fail(host, VSF_LOG_MEMORY, "distances of %u vertices", n);
+    }
+    memset(object, 0, sizeof *object);
+    object->allocator = a;
+    object->buffers = buffers;
+    object->near_pair = extra;
+    object->values = extra + 2 * (size_t)n;
+    object->step = VSF_NONE;
+    for (i = 0; i < n; i++) {
+        object->near_pair[2 * (size_t)i] = object->near_pair[2 * (size_t)i + 1] = VSF_FAR;
+        object->values[i] = 0.0f;
+    }
+    vsf_buffers_describe(&object->buffers, object->list, &object->desc);
+    vsf__object_extra(object, 4, object->values, n);
+    vsf__object_extra(object, 5, object->near_pair, 2 * n);
+    object->desc.buffer_count = 6;
+    return LAO_OK;
+}
+
+VSF_API void vsf_object_free(vsf_object *object) {
+    if (object && object->near_pair) {
+        vsf__give(&object->allocator, object->near_pair);
+        vsf_buffers_free(&object->buffers);
+        memset(object, 0, sizeof *object);
+    }
+}
+
+VSF_API uint32_t vsf_mesh_layers(const vsf_mesh *mesh) {
+    const vsf_mesh_info *info = &mesh->info;
+    uint32_t most = (uint32_t)vsf__settings[VSF_SETTING_ID_layers].standard;
+    if (info->open_edges || info->crowded_edges || info->twisted_edges || info->parts > most) {
+        return most;
+    }
+    return info->parts > 0 ? info->parts - 1 : 0;
+}
+
+VSF_API int vsf_object_time(vsf_object *object, const vsf_near *table, double time,
+                            vsf_settings *settings, lao_object_desc *update) {
+    uint32_t step = vsf_near_find(table, time, &settings->near_part);
+    settings->near_gamma = table->gamma;
+    settings->set |= VSF_SET(near_part) | VSF_SET(near_gamma);
+    *update = object->desc;
+    update->buffers = &object->list[5];
+    update->buffer_count = 1;
+    if (step == object->step || table->vertex_count != object->buffers.vertex_count) {
+        return 0;
+    }
+    vsf_near_pair(table, step, object->near_pair);
+    object->step = step;
+    return 1;
 }
 
 #ifdef __cplusplus

@@ -3,6 +3,7 @@
 
 #include "bench_case.h"
 #include "bench_flow.h"
+#include "bench_surface.h"
 #include "bench_vessel.h"
 #include "bench_modules.h"
 #include "bench_report.h"
@@ -28,7 +29,7 @@ typedef struct bench_options {
     uint32_t lines[MOST], line_count;
     bench_size sizes[MOST];
     uint32_t size_count;
-    bool json, data, quick, flow, vessel, help, table1;
+    bool json, data, quick, flow, vessel, surface, help, table1;
     const char *export_lines;
 } bench_options;
 
@@ -51,6 +52,8 @@ static const char usage[] =
     "  --quick                 1000 lines at 214x230, 3 frames, unless told otherwise\n"
     "  --flow                  instead: pathlines of flow4d.h, 30000 (--quick: 1000; --lines N)\n"
     "  --vessel                instead: fields of embedded vessel trees and rays through them\n"
+    "  --surface               instead: frames of meshes of 10,000 to 1,000,000 triangles, per "
+    "pass\n"
     "  --export-lines FILE     only write lines and camera for bench/vtk_peer.py\n"
     "\n"
     "Passes are timed with a finish (OpenGL) or timestamps (Vulkan), in the same frames as their\n"
@@ -167,10 +170,10 @@ static bool parse_flag(int argc, char **argv, int *i, bench_options *options) {
     struct {
         const char *name;
         bool *value;
-    } switches[] = {{"--json", &options->json},   {"--data", &options->data},
-                    {"--quick", &options->quick}, {"--table1", &options->table1},
-                    {"--flow", &options->flow},   {"--vessel", &options->vessel},
-                    {"--help", &options->help}};
+    } switches[] = {{"--json", &options->json},       {"--data", &options->data},
+                    {"--quick", &options->quick},     {"--table1", &options->table1},
+                    {"--flow", &options->flow},       {"--vessel", &options->vessel},
+                    {"--surface", &options->surface}, {"--help", &options->help}};
     for (size_t k = 0; k < sizeof switches / sizeof *switches; k++) {
         if (strcmp(argv[*i], switches[k].name) == 0)
             return *switches[k].value = true;
@@ -429,6 +432,14 @@ static bool vessel_run(const bench_options *options, cJSON *document) {
     return bench_vessel_run(document, options->quick);
 }
 
+/* The same of `--surface`. */
+static bool surface_run(const bench_options *options, cJSON *document) {
+    cJSON_AddStringToObject(document, "program", "lineao bench --surface");
+    cJSON_AddNumberToObject(document, "version", LAO_VERSION);
+    cJSON_AddNumberToObject(document, "processors", (double)sysconf(_SC_NPROCESSORS_ONLN));
+    return bench_surface_run(document, options->quick);
+}
+
 static bool print_json(const cJSON *document) {
     char *words = cJSON_Print(document);
     if (words)
@@ -446,15 +457,16 @@ int bench_command(int argc, char **argv) {
     }
     if (options.help)
         return fputs(usage, stdout) < 0;
-    bool lines = !options.flow && !options.vessel;
+    bool lines = !options.flow && !options.vessel && !options.surface;
     if (lines)
         fill_in(&options);
     if (lines && options.export_lines)
         return export_run(&options) ? 0 : 1;
     cJSON *document = cJSON_CreateObject();
-    bool ok = options.flow     ? flow_run(&options, document)
-              : options.vessel ? vessel_run(&options, document)
-                               : run(&options, document);
+    bool ok = options.flow      ? flow_run(&options, document)
+              : options.vessel  ? vessel_run(&options, document)
+              : options.surface ? surface_run(&options, document)
+                                : run(&options, document);
     if (ok && lines)
         bench_report_judge(document);
     if (ok && options.json)
@@ -463,6 +475,8 @@ int bench_command(int argc, char **argv) {
         bench_flow_print(document);
     else if (ok && options.vessel)
         bench_vessel_print(document);
+    else if (ok && options.surface)
+        bench_surface_print(document);
     else if (ok)
         bench_report_print(document);
     cJSON_Delete(document);

@@ -9,6 +9,11 @@ bool bench_floors_have_words(void) {
     return BENCH_HAVE_WORDS != 0;
 }
 
+const lao_shader *bench_floor_shaders(uint32_t *count) {
+    *count = (uint32_t)(sizeof bench_shaders / sizeof *bench_shaders);
+    return bench_shaders;
+}
+
 /* The settings block of a module holds its own settings, and the vertex stage of the line pass
  * reads those of the line module: so they are ours too, in the same places, under names that hide
  * none. */
@@ -88,8 +93,7 @@ const lao_module *bench_floors_make(bench_floors *floors, const lao_settings *se
     floors->module.name = "floors";
     floors->module.passes = floors->passes;
     floors->module.images = floors->images;
-    floors->module.shaders = bench_shaders;
-    floors->module.shader_count = (uint32_t)(sizeof bench_shaders / sizeof *bench_shaders);
+    floors->module.shaders = bench_floor_shaders(&floors->module.shader_count);
     add_settings(floors, settings);
     add_image(floors, "floor_color", LAO_FORMAT_RGBA8);
     add_image(floors, "floor_zbuffer", LAO_FORMAT_D32F);

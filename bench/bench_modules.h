@@ -3,6 +3,7 @@
  *   floor_lines    the quads of the line pass, by its own vertex stage, one flat colour, one target
  *   floor_taps     32 + 16 + 11 reads of the pyramid at literal offsets, summed, nothing else, on
  *                  every pixel: its time over all pixels is what a covered one cannot do without
+ *   floor_gouraud  a mesh with light at its vertices, one target (bench_surface.c has its row)
  *
  * They run in the frame of the passes that they stand beside, so that what disturbs the one
  * disturbs the other. */
@@ -26,6 +27,9 @@ typedef struct bench_floors {
 
 /* Makes the module for line sets with these settings: their `width` goes into the quads. */
 const lao_module *bench_floors_make(bench_floors *floors, const lao_settings *settings);
+
+/* The shaders of all floors. */
+const lao_shader *bench_floor_shaders(uint32_t *count);
 
 /* Was glslangValidator there at build time, so that the floors run on Vulkan too? */
 bool bench_floors_have_words(void);

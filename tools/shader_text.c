@@ -6,6 +6,8 @@
 #include "lineao.h"
 #define SDFVESSEL_IMPLEMENTATION
 #include "sdfvessel.h"
+#define VESSELSURFACE_IMPLEMENTATION
+#include "vesselsurface.h"
 
 enum { SHIPPED_SAMPLES = 32, MOST_LEVELS = 8 };
 
@@ -97,10 +99,11 @@ static void print_levels(void) {
 }
 
 int main(int argc, char **argv) {
-    const lao_module *modules[2];
+    const lao_module *modules[3];
     size_t i;
     modules[0] = lao_lines_module();
     modules[1] = sdv_module();
+    modules[2] = vsf_module();
     for (i = 0; argc == 3 && i < sizeof modules / sizeof modules[0]; i++) {
         if (strcmp(argv[1], "settings") == 0 && strcmp(argv[2], modules[i]->name) == 0) {
             print_settings(modules[i]);

@@ -29,6 +29,7 @@ typedef enum flag_type {
     FLAG_SETTING, /* the setting named in `choices` */
     FLAG_LAYOUT,  /* const char *[2]: the name of an .svg, of a .json */
     FLAG_SHAPE,   /* a further shape; `choices`: the operation */
+    FLAG_FOCUS,   /* cli_surface_options: two numbers or four */
 } flag_type;
 
 typedef struct flag_row {
@@ -42,15 +43,15 @@ typedef struct flag_row {
 
 #define BOTH (CLI_RENDER | CLI_COMPARE)
 #define ANY (CLI_INFO | BOTH | CLI_FLOW)
-#define SHOT (CLI_RENDER | CLI_VESSEL)
-#define DRAWN (BOTH | CLI_VESSEL)
+#define SHOT (CLI_RENDER | CLI_VESSEL | CLI_SURFACE)
+#define DRAWN (BOTH | CLI_VESSEL | CLI_SURFACE)
 #define TRACE (BOTH | CLI_FLOW)
 #define ALL(field) false, offsetof(cli_options, field)
 #define FILE_(field) true, offsetof(cli_source, field)
 
 // clang-format off
 static const flag_row flags[] = {
-    {"--out", "-o", "FILE.png", FLAG_TEXT, BOTH | CLI_SHEET, ALL(out), NULL, "the picture; with --frames a pattern (out_%04d.png, first = 0), or a video: .mp4, .webm, .gif"},
+    {"--out", "-o", "FILE.png", FLAG_TEXT, BOTH | CLI_SHEET | CLI_SURFACE, ALL(out), NULL, "the picture; with --frames a pattern (out_%04d.png, first = 0), or a video: .mp4, .webm, .gif"},
     {"--out", "-o", "FILE", FLAG_TEXT, CLI_FLOW, ALL(out), NULL, "the lines: .vtp (with time and speed), .trk (the same) or .tck (positions alone)"},
     {"--out", "-o", "FILE.png", FLAG_TEXT, CLI_VESSEL, ALL(out), NULL, "the picture; of several cameras or frames a pattern (out_%04d.png, first = 0) or a video"},
     {"--style", NULL, "NAME", FLAG_CHOICE, CLI_VESSEL, ALL(vessel.style), CLI_STYLES, "a set of settings: default, plain (light alone), ink (flat colours and outlines) or glow (soft, no outlines)"},
@@ -66,6 +67,24 @@ static const flag_row flags[] = {
     {"--nodes", NULL, "N", FLAG_COUNT, CLI_VESSEL, ALL(vessel.nodes), NULL, "of the embedded tree, when no TREE is given (3000)"},
     {"--cameras", NULL, "FILE.json", FLAG_TEXT, CLI_VESSEL, ALL(vessel.cameras), NULL, "an array of cameras: one picture for each"},
     {"--frames", NULL, "N", FLAG_COUNT, CLI_VESSEL, ALL(frames), NULL, "pictures of one turn around the tree"},
+    {"--lines", NULL, "FILE", FLAG_TEXT, CLI_SURFACE, ALL(surface.lines), NULL, "pathlines with the point array 'time' (ms): drawn inside, and what the surface lights up for"},
+    {"--baseline", NULL, "NAME", FLAG_CHOICE, CLI_SURFACE, ALL(surface.baseline), "transparent|fresnel", "for comparison, the setting shading: transparent or fresnel"},
+    {"--brightness", NULL, "MM|auto", FLAG_AUTO, CLI_SURFACE, ALL(surface.brightness), NULL, "how much the wall shows of its shape; auto: by its median curvature (1.5; embedded surfaces: auto)"},
+    {"--focus", NULL, "NEAR,FAR|X,Y,Z,R", FLAG_FOCUS, CLI_SURFACE, ALL(surface), NULL, "blur what is nearer or farther from the eye than this (mm), or than a ball"},
+    {"--value", NULL, "NAME", FLAG_TEXT, CLI_SURFACE, ALL(surface.value), NULL, "hue by this array of the MESH (its length, if a vector) instead of by near flow; --range says from where to where"},
+    {"--vertices", NULL, "FILE.json", FLAG_TEXT, CLI_SURFACE, ALL(surface.vertices), NULL, "numbers of every vertex: p, n, measure, near; triangles; with lines phi, beta, gamma"},
+    {"--normals", NULL, NULL, FLAG_SWITCH, CLI_SURFACE, ALL(surface.normals), NULL, "take the normals of the file, where it has any"},
+    {"--flip", NULL, "on|off", FLAG_CHOICE, CLI_SURFACE, ALL(surface.flip), "on|off", "turn the MESH inside out, or leave an open one that seems to be so (closed ones never are)"},
+    {"--smooth", NULL, "N", FLAG_COUNT, CLI_SURFACE, ALL(surface.smooth), NULL, "smooth the MESH by N double steps that keep its volume (Taubin)"},
+    {"--subdivide", NULL, "N", FLAG_COUNT, CLI_SURFACE, ALL(surface.subdivide), NULL, "each time four triangles for one (Loop), 1..4"},
+    {"--scene", NULL, "NAME", FLAG_CHOICE, CLI_SURFACE, ALL(scene), "aorta|aneurysm|liver|bone", "embedded surface, when no MESH is given: aorta (an arch with a bulge, and its flow), aneurysm, liver or bone"},
+    {"--frames", NULL, "N", FLAG_COUNT, CLI_SURFACE, ALL(frames), NULL, "a sequence of pictures or a video over one period of the lines, or from their first time to the last"},
+    {"--time", NULL, "MS", FLAG_NUMBER, CLI_SURFACE, ALL(time), NULL, "what is lit: the lines around this time, and the surface near them (0; of the embedded flow 180)"},
+    {"--unit", NULL, "NAME", FLAG_CHOICE, CLI_SURFACE, FILE_(unit), "mm|cm|um|m", "of the MESH (mm)"},
+    {"--color", NULL, "#rrggbb", FLAG_PAINT, CLI_SURFACE, FILE_(color), NULL, "of the lines: or r,g,b in 0..1, direction, line or the NAME of an attribute"},
+    {"--colormap", NULL, "NAME", FLAG_CHOICE, CLI_SURFACE, FILE_(colormap), COLOUR_MAPS, "of the lines' attribute: " COLOUR_MAPS " (viridis)"},
+    {"--range", NULL, "A,B", FLAG_RANGE, CLI_SURFACE, FILE_(range), NULL, "values at both ends of --value or of the lines' colours, or percentiles (2%,98%)"},
+    {"--every", NULL, "N", FLAG_COUNT, CLI_SURFACE, FILE_(every), NULL, "keep each N-th line"},
     {"--seeds", NULL, "N", FLAG_COUNT, TRACE, ALL(flow.seeds), NULL, "lines, each from a random place inside and a random time (one per 4 mm^3, 1000 to 30000)"},
     {"--seed", NULL, "N", FLAG_COUNT, TRACE, ALL(flow.seed), NULL, "of the random numbers; the same gives the same lines"},
     {"--mask", NULL, "FILE|NAME", FLAG_TEXT, ANY, ALL(flow.mask), NULL, "where the vessel is: a volume of the same size, or an array of the FILE (>= 0.5 is inside)"},
@@ -106,8 +125,8 @@ static const flag_row flags[] = {
     {"--title", NULL, "TEXT", FLAG_TEXT, CLI_SHEET, ALL(title), NULL, "above all pictures"},
     {"--note", NULL, "TEXT", FLAG_TEXT, CLI_SHEET, ALL(note), NULL, "below all pictures"},
     {"--widest", NULL, "N", FLAG_COUNT, CLI_SHEET, ALL(widest), NULL, "pixels; wider pictures shrink by a whole factor (no limit)"},
-    {"--json", NULL, NULL, FLAG_SWITCH, CLI_INFO | CLI_COMPARE | CLI_FLOW | CLI_VESSEL, ALL(json), NULL, "one JSON object on standard output"},
-    {"--help", "-h", NULL, FLAG_SWITCH, ANY | CLI_SHEET | CLI_VESSEL, ALL(help), NULL, "this text"},
+    {"--json", NULL, NULL, FLAG_SWITCH, CLI_INFO | CLI_COMPARE | CLI_FLOW | CLI_VESSEL | CLI_SURFACE, ALL(json), NULL, "one JSON object on standard output"},
+    {"--help", "-h", NULL, FLAG_SWITCH, ANY | CLI_SHEET | CLI_VESSEL | CLI_SURFACE, ALL(help), NULL, "this text"},
     {"--color", NULL, "#rrggbb", FLAG_PAINT, BOTH, FILE_(color), NULL, "or r,g,b in 0..1, direction, line or the NAME of an attribute"},
     {"--colormap", NULL, "NAME", FLAG_CHOICE, BOTH, FILE_(colormap), COLOUR_MAPS, "of attributes: " COLOUR_MAPS " (viridis)"},
     {"--range", NULL, "A,B", FLAG_RANGE, BOTH, FILE_(range), NULL, "values at both ends of the colour map, or percentiles of all (2%,98%)"},
@@ -248,6 +267,9 @@ static module_row module_of(cli_command_bit command, int index) {
     const module_row vessel = {sdv_module(), offsetof(cli_source, vessel)};
     const module_row layout = {&layout_module, offsetof(cli_source, layout)};
     const module_row none = {NULL, 0};
+    const module_row surface = {vsf_module(), offsetof(cli_source, surface)};
+    if (command & CLI_SURFACE)
+        return index == 0 ? surface : index == 1 ? lines : none;
     if (command & CLI_VESSEL)
         return index == 0 ? vessel : index == 1 ? layout : lines;
     return index == 0 && command & (CLI_RENDER | CLI_COMPARE) ? lines : none;
@@ -351,7 +373,9 @@ static bool set_assignment(parser *p, const char *text) {
     const char *nearest = cli_nearest(name, setting_name, p);
     return cli_fail("--set: there is no setting '%s'%s%s; 'lineao %s --help' lists them", name,
                     nearest ? "; did you mean " : "", nearest ? nearest : "",
-                    p->command & CLI_VESSEL ? "vessel" : "render");
+                    p->command & CLI_VESSEL    ? "vessel"
+                    : p->command & CLI_SURFACE ? "surface"
+                                               : "render");
 }
 
 static bool set_scene(const char *value, const char **scene) {
@@ -389,6 +413,17 @@ static bool add_shape(parser *p, const flag_row *row, const char *value) {
     o->shapes[o->shape_count].operation = (uint32_t)(row->choices[0] - '0');
     o->shapes[o->shape_count++].text = value;
     return true;
+}
+
+/* Two depths, the nearer first, or a ball. */
+static bool parse_focus(const char *text, cli_surface_options *out) {
+    out->focus = text;
+    out->focus_numbers = cli_numbers(text, out->focus_at, 4)   ? 4
+                         : cli_numbers(text, out->focus_at, 2) ? 2
+                                                               : 0;
+    return out->focus_numbers == 4
+               ? out->focus_at[3] >= 0
+               : out->focus_numbers == 2 && out->focus_at[0] <= out->focus_at[1];
 }
 
 static bool is_flow_flag(const flag_row *row) {
@@ -456,6 +491,9 @@ static bool set_flag(parser *p, const flag_row *row, const char *value) {
         return set_layout(row, value, field);
     case FLAG_SHAPE:
         return add_shape(p, row, value);
+    case FLAG_FOCUS:
+        ok = parse_focus(value, field);
+        break;
     }
     return ok || cli_fail("%s: '%s' is not a value of it; write %s", row->name, value,
                           row->choices ? row->choices : row->value);
@@ -543,6 +581,25 @@ static bool check_vessel(const cli_options *o) {
     return true;
 }
 
+static bool check_surface(const cli_options *o) {
+    const cli_surface_options *s = &o->surface;
+    bool flow = s->lines || (o->file_count == 0 && (!o->scene || strcmp(o->scene, "aorta") == 0));
+    if (o->file_count > 1)
+        return cli_fail("%s: is a second MESH, and one is drawn at a time", o->files[1].path);
+    if (o->file_count == 1 && o->scene)
+        return cli_fail("--scene: is for embedded surfaces, and a MESH is given");
+    if (!o->out && !o->dump && !o->timings && !o->save_camera && !s->vertices && !o->json)
+        return cli_fail("surface: no output is asked for; write -o out.png");
+    if (s->subdivide > 4)
+        return cli_fail("--subdivide: '%u' is not a value of it; write 1..4", s->subdivide);
+    if (s->value && o->file_count == 0)
+        return cli_fail("--value: names an array of a MESH, and none is given");
+    if (!flow && (o->frames || !isnan(o->time)))
+        return cli_fail("%s: shows lines at a time, and none are given; write --lines FILE",
+                        o->frames ? "--frames" : "--time");
+    return true;
+}
+
 static bool check(const parser *p) {
     const cli_options *o = p->options;
     if (o->help)
@@ -562,6 +619,8 @@ static bool check(const parser *p) {
         return cli_fail("%s: is for velocity volumes, and no FILE is given", o->flow_flag);
     if (p->command == CLI_VESSEL && !check_vessel(o))
         return false;
+    if (p->command == CLI_SURFACE && !check_surface(o))
+        return false;
     if (p->command == CLI_RENDER && !o->out && !o->dump && !o->timings && !o->save_camera)
         return cli_fail("render: no output is asked for; write -o out.png");
     if (cli_is_video(o->out) && !o->frames && !o->vessel.cameras)
@@ -574,7 +633,8 @@ static bool check(const parser *p) {
         return cli_fail("%s: is for embedded scenes, and a FILE is given; %s",
                         o->scene ? "--scene" : "--lines",
                         o->scene ? "leave one of them out" : "thin a file with --every N");
-    if (o->file_count == 0 && (o->all.every || o->all.min_length > 0 || o->all.bundle))
+    if (o->file_count == 0 && p->command != CLI_SURFACE &&
+        (o->all.every || o->all.min_length > 0 || o->all.bundle))
         return cli_fail("%s: thins FILEs, and none is given; --lines N is for embedded scenes",
                         o->all.every    ? "--every"
                         : o->all.bundle ? "--bundle"
@@ -596,6 +656,7 @@ bool cli_parse(cli_command_bit command, int argc, char **argv, cli_options *out)
     out->all.range[0] = (colour_end){command == CLI_VESSEL ? 0 : 2, true};
     out->all.range[1] = (colour_end){command == CLI_VESSEL ? 100 : 98, true};
     out->flow.threshold = -1;
+    out->surface.brightness = -1;
     out->all.min_length = -1;
     cli_parse_color("#f4f4f2", out->background);
     out->files = cli_new((size_t)argc + 1, sizeof *out->files);
@@ -662,15 +723,17 @@ void cli_print_flags(cli_command_bit command) {
     print_rows(command, false, false, "Flags");
     print_rows(command, false, true, "Velocity volumes");
     print_rows(command, true, false,
-               "Of a FILE: before the first FILE for all FILEs, after a FILE for it alone");
-    if (command & (CLI_COMPARE | CLI_RENDER | CLI_VESSEL))
+               command == CLI_SURFACE
+                   ? "Of the MESH and of the lines"
+                   : "Of a FILE: before the first FILE for all FILEs, after a FILE for it alone");
+    if (command & (DRAWN | CLI_RENDER))
         printf("\nSettings%s (default in parentheses)\n",
-               command & CLI_VESSEL ? "" : ", for all FILEs or for one");
+               command & (CLI_VESSEL | CLI_SURFACE) ? "" : ", for all FILEs or for one");
     for (int m = 0; m < MODULES; m++) { /* of those for lines few do anything to vessels */
         const lao_module *module = module_of(command, m).module;
-        if (module && !(command & CLI_VESSEL && module == lao_lines_module()))
+        if (module && !(command & (CLI_VESSEL | CLI_SURFACE) && module == lao_lines_module()))
             print_settings(module);
     }
-    if (command & CLI_VESSEL)
+    if (command & (CLI_VESSEL | CLI_SURFACE))
         printf("  Those of lineao render --help are taken too; supersampling is --ssaa.\n");
 }

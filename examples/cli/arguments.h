@@ -6,6 +6,7 @@
 #include "colour.h"
 #include "lineao.h"
 #include "sdfvessel.h"
+#include "vesselsurface.h"
 
 #include <stdbool.h>
 #include <stdint.h>
@@ -17,7 +18,8 @@ typedef enum cli_command_bit {
     CLI_COMPARE = 4,
     CLI_FLOW = 8,
     CLI_SHEET = 16,
-    CLI_VESSEL = 32
+    CLI_VESSEL = 32,
+    CLI_SURFACE = 64
 } cli_command_bit;
 
 /* Settings of a tree's 2D layout, as a module without passes; as lao_settings: zero is the default
@@ -47,6 +49,7 @@ typedef struct cli_source {
     const char *path; /* NULL: the embedded scene; of a sheet: "CAPTION=FILE.png" */
     lao_settings settings;
     sdv_settings vessel;
+    vsf_settings surface;
     cli_layout_settings layout;
     const char *color; /* NULL: automatic */
     const char *colormap;
@@ -84,6 +87,16 @@ typedef struct cli_vessel_options {
     uint32_t shape_count;
 } cli_vessel_options;
 
+/* What `surface` does with a mesh. */
+typedef struct cli_surface_options {
+    const char *lines, *vertices, *baseline, *focus, *value, *flip;
+    double focus_at[4]; /* two numbers (depths, mm) or four (a ball) */
+    int focus_numbers;  /* 0: none */
+    uint32_t smooth, subdivide;
+    double brightness; /* mm; 0: from the mesh; negative: not given */
+    bool normals;
+} cli_surface_options;
+
 typedef struct cli_options {
     cli_source all;    /* flags before the first FILE */
     cli_source *files; /* owned */
@@ -98,6 +111,7 @@ typedef struct cli_options {
     bool ortho, json, backdrop, help;
     cli_flow_options flow;
     cli_vessel_options vessel;
+    cli_surface_options surface;
     const char *flow_flag; /* the last flag in `flow` that was given, or NULL */
 } cli_options;
 

@@ -2,60 +2,20 @@
 #include "commands.h"
 #include "image.h"
 #include "report.h"
+#include "writing.h"
 #include "vessel.h"
 #include "video.h"
 
 #include <math.h>
-#include <stdarg.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
 /* ---- text files -------------------------------------------------------------------------- */
 
-/* Text that grows; broken: no memory, reported. */
-typedef struct growing_text {
-    char *text;
-    size_t length, room;
-    bool broken;
-} growing_text;
-
-static int grow(void *user, const char *text, size_t length) {
-    growing_text *t = user;
-    if (!t->broken && t->length + length + 1 > t->room) {
-        size_t room = 2 * (t->length + length + 1);
-        char *grown = realloc(t->text, room);
-        t->broken = !grown && !cli_fail("out of memory");
-        t->text = grown ? grown : t->text;
-        t->room = grown ? room : t->room;
-    }
-    if (t->broken)
-        return 1;
-    memcpy(t->text + t->length, text, length);
-    t->length += length;
-    t->text[t->length] = '\0';
-    return 0;
-}
-
-static void print_to(growing_text *t, const char *format, ...) CLI_PRINTF(2, 3);
-static void print_to(growing_text *t, const char *format, ...) {
-    char text[256];
-    va_list list;
-    va_start(list, format);
-    int length = vsnprintf(text, sizeof text, format, list);
-    va_end(list);
-    grow(t, text, (size_t)length);
-}
-
-static bool finish_text(growing_text *t, const char *path) {
-    bool ok = !t->broken && cli_go_on() && cli_write_text(path, t->text);
-    free(t->text);
-    return ok;
-}
-
 static bool write_layout(const cli_tree *tree, const char *path, bool svg) {
-    growing_text t = {NULL, 0, 0, false};
-    const sdv_writer writer = {grow, &t};
+    cli_text t = {NULL, 0, 0, false};
+    const sdv_writer writer = {cli_text_add, &t};
     sdv_svg_desc desc;
     memset(&desc, 0, sizeof desc);
     desc.radial = tree->source->layout.layout_radial > 0;
@@ -63,26 +23,26 @@ static bool write_layout(const cli_tree *tree, const char *path, bool svg) {
         sdv_layout_write_svg(&tree->reduced, &tree->layout, &desc, &writer);
     else
         sdv_layout_write_json(&tree->reduced, &tree->layout, tree->distances, &writer);
-    return finish_text(&t, path);
+    return cli_text_write(&t, path);
 }
 
 /* The segments of the tree, then those nodes that are balls of their own, as the field counts. */
 static bool write_tree(const cli_tree *tree, const char *path) {
     const sdv_tree *t = &tree->vessel.tree;
     const double *o = tree->vessel.origin;
-    growing_text out = {NULL, 0, 0, false};
+    cli_text out = {NULL, 0, 0, false};
     const char *comma = "";
-    print_to(&out, "{\"nodes\":[");
+    cli_text_print(&out, "{\"nodes\":[");
     for (uint32_t i = 0; i < t->node_count && !out.broken; i++) {
         const lao_v4 *n = &t->nodes[i];
         char r[32];
         cli_shortest(n->w, r, sizeof r);
-        print_to(&out, "%s\n{\"p\":[%.9g,%.9g,%.9g],\"r\":%s}", i ? "," : "", o[0] + (double)n->x,
-                 o[1] + (double)n->y, o[2] + (double)n->z, r);
+        cli_text_print(&out, "%s\n{\"p\":[%.9g,%.9g,%.9g],\"r\":%s}", i ? "," : "",
+                       o[0] + (double)n->x, o[1] + (double)n->y, o[2] + (double)n->z, r);
     }
-    print_to(&out, "],\n\"segments\":[");
+    cli_text_print(&out, "],\n\"segments\":[");
     for (uint32_t i = 0; i < t->segment_count && !out.broken; i++, comma = ",")
-        print_to(&out, "%s\n[%u,%u]", comma, t->segments[i].parent, t->segments[i].child);
+        cli_text_print(&out, "%s\n[%u,%u]", comma, t->segments[i].parent, t->segments[i].child);
     bool *touched = cli_new(t->node_count, sizeof *touched);
     if (!touched) {
         free(out.text);
@@ -93,13 +53,13 @@ static bool write_tree(const cli_tree *tree, const char *path) {
         touched[t->segments[i].parent] = touched[t->segments[i].child] = true;
     for (uint32_t i = 0; i < t->node_count && !out.broken; i++) {
         if (!touched[i]) {
-            print_to(&out, "%s\n[%u,%u]", comma, i, i);
+            cli_text_print(&out, "%s\n[%u,%u]", comma, i, i);
             comma = ",";
         }
     }
     free(touched);
-    print_to(&out, "]}\n");
-    return finish_text(&out, path);
+    cli_text_print(&out, "]}\n");
+    return cli_text_write(&out, path);
 }
 
 /* ---- dumps ------------------------------------------------------------------------------- */
@@ -138,8 +98,8 @@ static bool edit_planes(void *user, cli_planes *planes) {
 
 /* ---- pictures ---------------------------------------------------------------------------- */
 
-static bool write_picture(const char *path, cli_video *video, cli_session *session,
-                          const cli_shot *shot) {
+bool cli_write_picture(const char *path, cli_video *video, cli_session *session,
+                       const cli_shot *shot) {
     char error[IMAGE_ERROR_SIZE];
     uint8_t *pixels = cli_session_picture(session);
     if (!pixels)
@@ -166,7 +126,7 @@ static bool write_frame(cli_tree *tree, cli_session *session, const cli_shot *sh
         const char *path = numbered ? numbered : paths[i];
         ok = (frame < 0 || numbered) && cli_go_on() &&
              (i == 0 ? cli_dump(path, session, &tree->scene, shot, edit_planes, tree)
-                     : write_picture(path, video, session, shot));
+                     : cli_write_picture(path, video, session, shot));
         free(numbered);
     }
     return ok;
@@ -241,7 +201,7 @@ static bool draw(cli_tree *tree, cli_session *session, cli_shot *shot, const vie
            cli_video_close(&video, draw_views(tree, session, shot, views, &video));
 }
 
-static bool write_camera(const cli_options *options, const camera_pose *camera) {
+bool cli_write_camera(const cli_options *options, const camera_pose *camera) {
     if (!options->save_camera)
         return true;
     char *text = camera_print(camera);
@@ -262,7 +222,7 @@ static bool render(cli_tree *tree) {
     bool ok = cli_tree_prepare(tree) && cli_shot_make(options, &tree->scene, &shot);
     if (ok && views.poses)
         shot.camera = views.poses[0];
-    ok = ok && write_camera(options, &shot.camera);
+    ok = ok && cli_write_camera(options, &shot.camera);
     if (ok && (options->out || options->dump || options->timings)) {
         ok = cli_session_open(&session, options->backend, &tree->scene, &shot,
                               options->dump ? LAO_VIEW_KEEP_IMAGES : 0) &&

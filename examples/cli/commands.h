@@ -2,7 +2,8 @@
 #ifndef LINEAO_CLI_COMMANDS_H
 #define LINEAO_CLI_COMMANDS_H
 
-#include "arguments.h"
+#include "session.h"
+#include "video.h"
 
 int cli_info(const cli_options *options);
 int cli_render(const cli_options *options);
@@ -10,9 +11,18 @@ int cli_compare(const cli_options *options);
 int cli_sheet_command(const cli_options *options);
 int cli_flow(const cli_options *options);
 int cli_vessel(const cli_options *options);
+int cli_surface(const cli_options *options);
 
 /* The file of one frame of a sequence: its number in place of %04d, or "_0007" before the
  * extension. For free(). NULL: reported. */
 char *cli_frame_path(const char *path, uint32_t frame);
+
+/* The session's last frame into a file of its own, or into `video` unless that is NULL. False:
+ * reported. */
+bool cli_write_picture(const char *path, cli_video *video, cli_session *session,
+                       const cli_shot *shot);
+
+/* What --save-camera asks for. False: reported. */
+bool cli_write_camera(const cli_options *options, const camera_pose *camera);
 
 #endif

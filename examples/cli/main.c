@@ -55,6 +55,23 @@ static const char vessel_about[] =
     "A dump holds, in mm: position.X .Y .Z, normal.X .Y .Z, segment.V (counts --tree; -1 nothing,\n"
     "-2 a shape), mask.V, dmin.V (the nearest miss of the pixel's ray; 1e30: none), distance.V.\n";
 
+static const char surface_about[] =
+    "A MESH is STL, PLY, OBJ, VTP or VTK; without one the program makes an aorta with a bulge, "
+    "and\n"
+    "the blood in it. Back faces are opaque, then come the lines, then front faces by what they\n"
+    "are: clear where they are flat towards the viewer, orange where they bulge, cyan where they\n"
+    "are hollow; redder and greener near blood that is lit (Lawonn 2014). --set brightness says\n"
+    "how much: it is a length, so that small vessels want less and large ones more (1.5 mm).\n\n"
+    "Lines are lit around --time, and drawn there (--trail highlight: everywhere, dark where "
+    "unlit).\n"
+    "A vertex's distance to the nearest lit part is phi, and 1 % of all distances at K times\n"
+    "(--set near_steps=K) are below gamma: near = 1 - phi / gamma. --highlight-beta is how long\n"
+    "lit parts are (twice the median of the lines' last times).\n"
+    "The flags of lines (--width, --strength ...) are those of lineao render.\n\n"
+    "A dump holds of the nearest front face: position.X .Y .Z (mm), normal.X .Y .Z, measure.V\n"
+    "(1/mm), near.V, mask.V, lut.R .G .B (as composed: premultiplied). Without -o, --dump and\n"
+    "--timings nothing is drawn and no GPU is opened.\n";
+
 static const command_row commands[] = {
     {"info", CLI_INFO, cli_info, "FILE... [--json]",
      "what is in files of lines, vessel trees, meshes and velocity volumes",
@@ -107,6 +124,19 @@ static const command_row commands[] = {
      "  lineao vessel tree.swc --cameras path.json -o f_%04d.png --dump f_%04d.exr\n"
      "  lineao vessel tree.swc --tree tree.json --layout layout.json       numbers alone\n",
      vessel_about},
+    {"surface", CLI_SURFACE, cli_surface, "[MESH] [--lines FILE] -o out.png",
+     "draw a vessel's wall around its blood flow",
+     "  lineao surface -o aorta.png                               an aorta made by code, at "
+     "systole\n"
+     "  lineao surface artery.stl --lines flow.vtp --time 120 -o out.png\n"
+     "  lineao surface artery.stl --lines flow.vtp --frames 100 -o beat.mp4\n"
+     "  lineao surface wall.vtp --value wss --range 0,5 -o wss.png      hue by an array of the "
+     "file\n"
+     "  lineao surface artery.stl --set brightness=0.8 --smooth 10 -o clear.png\n"
+     "  lineao surface --scene aneurysm --baseline fresnel -o fresnel.png\n"
+     "  lineao surface --focus 5,0,20,15 --depth-shadow on -o focus.png   sharp around a point\n"
+     "  lineao surface artery.stl --vertices v.json                     numbers alone\n",
+     surface_about},
     {"bench", 0, NULL, "[--json]", "time every pass and frame of fixed scenes on both backends", "",
      NULL},
 };

@@ -1,0 +1,86 @@
+/* Faces of a surface. Variant 0: opaque back faces. 1: the nearest front faces, shaded by shape and flow (L14; METHODS
+   9.3, 10.4). 2: the nearest of those behind the layer before. */
+LAO_TEX(0, samplerBuffer, points)
+LAO_TEX(1, samplerBuffer, normals)
+LAO_TEX(2, samplerBuffer, triangles)
+LAO_TEX(3, samplerBuffer, distances) /* two per vertex: at two steps */
+LAO_TEX(4, samplerBuffer, values)
+LAO_TEX(5, sampler2D, measures)
+LAO_TEX(6, sampler2D, scene_z)
+LAO_TEX(7, sampler2D, layer_z)
+LAO_CONSTANT(0, lao_constant_variant)
+LAO_CONSTANT(1, lao_constant_shading)
+LAO_CONSTANT(2, lao_constant_near_source)
+LAO_CONSTANT(3, lao_constant_falloff_form)
+
+LAO_VARYING(0, vec4, at_point)  /* world, mm; measure */
+LAO_VARYING(1, vec4, at_normal) /* world; x of the look-up */
+
+#ifdef LAO_VERTEX
+void main() {
+    int corner = int(LAO_VERTEX_INDEX);
+    vec4 triangle = texelFetch(triangles, corner / 3);
+    int k = corner % 3;
+    int vertex = int(k == 0 ? triangle.x : (k == 1 ? triangle.y : triangle.z));
+    lao_v3 p = texelFetch(points, vertex).xyz;
+    float measure = 0.0;
+    float x = 0.0;
+    if (lao_constant_variant != 0) {
+        measure = texelFetch(measures, ivec2(vertex % 2048, vertex / 2048), 0).x;
+        if (lao_constant_near_source == VSF_NEAR_VALUE) {
+            x = vsf_value_x(texelFetch(values, vertex).x, lao_setting_value_low, lao_setting_value_high);
+        } else {
+            float distance = vsf_near_mix(texelFetch(distances, 2 * vertex).x, texelFetch(distances, 2 * vertex + 1).x,
+                                          lao_setting_near_part);
+            x = vsf_near_x(distance, lao_setting_near_gamma);
+        }
+    }
+    at_point = vec4(p, measure);
+    at_normal = vec4(texelFetch(normals, vertex).xyz, x);
+    lao_emit(lao_project(lao_frame.projection, lao_transform(lao_frame.view, p)));
+}
+#endif
+
+LAO_OUT(0, vec4, out_color)
+LAO_OUT(1, vec4, out_position)
+LAO_OUT(2, vec4, out_normal)
+LAO_OUT(3, vec4, out_lookup)
+
+#ifdef LAO_FRAGMENT
+void main() {
+    lao_v3 n = lao_v3_unit(at_normal.xyz, lao_v3_make(0.0, 0.0, 0.0));
+    lao_v4 eye = vsf_eye(lao_frame.view, lao_frame.depth.w);
+    lao_v3 v = lao_v3_unit(vsf_to_eye(eye, at_point.xyz, false), lao_v3_make(0.0, 0.0, 1.0));
+    float facing = lao_v3_dot(n, v);
+    lao_v3 base = lao_v3_make(lao_setting_wall_red, lao_setting_wall_green, lao_setting_wall_blue);
+    lao_v3 wall = vsf_wall(base, facing, lao_setting_wall_ambient, lao_setting_wall_diffuse);
+    out_position = vec4(at_point.xyz, 1.0);
+    out_normal = vec4(n, at_point.w);
+    out_lookup = vec4(0.0);
+    if (lao_constant_variant == 0) {
+        out_color = vec4(wall, 1.0);
+        return;
+    }
+    ivec2 pixel = LAO_PIXEL;
+    float z = gl_FragCoord.z;
+    if (!vsf_in_front(z, texelFetch(scene_z, pixel, 0).x, lao_frame.scale.z)) {
+        discard;
+    }
+    if (lao_constant_variant == 2) {
+        if (!vsf_in_front(texelFetch(layer_z, pixel, 0).x, z, lao_frame.scale.z)) {
+            discard;
+        }
+    }
+    lao_v4 lookup = vsf_lookup(at_normal.w, vsf_measure_y(at_point.w, lao_setting_brightness));
+    out_lookup = vec4(lookup.xyz, at_normal.w);
+    if (lao_constant_shading == VSF_SHADING_ADAPTIVE) {
+        out_color = lookup;
+    } else if (lao_constant_shading == VSF_SHADING_TRANSPARENT) {
+        out_color = vsf_premultiply(wall, lao_setting_opacity);
+    } else if (lao_constant_falloff_form == VSF_FALLOFF_PAPER) {
+        out_color = vsf_premultiply(wall, vsf_fresnel(facing, lao_setting_falloff));
+    } else {
+        out_color = vsf_premultiply(wall, vsf_fresnel_rim(facing, lao_setting_falloff));
+    }
+}
+#endif
