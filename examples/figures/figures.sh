@@ -1,8 +1,14 @@
 #!/bin/sh
-# Renders the figures of figures.table, one sheet of captioned panels each.
+# Renders the papers' figures, one sheet of captioned panels each.
 #   figures.sh PROGRAM FOLDER [NAME...]    with the lineao program PROGRAM into FOLDER/NAME.png; no NAME: all of them
 # Prints the path of each sheet. Rows and columns of data made by others are drawn when LINEAO_DATA names their folder;
-# FIGURES_SIZE ("480x360") is a size of panels instead of the table's.
+# FIGURES_SIZE ("480x360") is a size of panels instead of a table's.
+#
+# The figures stand in the tables beside this script, whose columns are separated by '|':
+#   figure NAME | size of a panel | pictures in a row (0: one for each column) | title | note
+#   row    ARGUMENTS | caption     what is drawn: @CAMERAS and @DATA stand for folders; rows with @DATA want LINEAO_DATA
+#   column ARGUMENTS | caption     how it is drawn
+# A panel is `lineao ROW COLUMN`, its command `render` unless the row begins with another one.
 set -eu
 LC_ALL=C
 export LC_ALL
@@ -54,8 +60,12 @@ finish() {
             panel=$((panel + 1))
             file=$work/$panel.png
             [ "$many" -eq 1 ] || caption="$row_caption: $caption"
+            case $row in
+                [a-z]*) ;;
+                *) row="render $row" ;;
+            esac
             # shellcheck disable=SC2046 # arguments are split into words on purpose
-            "$program" render $(arguments "$row $column") --size "$size" -o "$file" </dev/null
+            "$program" $(arguments "$row $column") --size "$size" -o "$file" </dev/null
             set -- "$@" "$caption=$file"
         done <"$work/columns"
     done <"$work/rows"
@@ -72,9 +82,10 @@ wanted() {
 
 names=$*
 for asked in "$@"; do
-    grep -q "^figure $asked |" "$here/figures.table" || die "$asked: is no figure of figures.table"
+    grep -q "^figure $asked |" "$here"/*.table || die "$asked: is no figure of $here"
 done
 name=
+cat "$here"/*.table >"$work/table"
 while IFS='|' read -r first second third fourth fifth; do
     rest=$(trim "${first#* }")
     case $first in
@@ -96,5 +107,5 @@ while IFS='|' read -r first second third fourth fifth; do
             printf '%s|%s\n' "$rest" "$(trim "$second")" >>"$work/${first%% *}s"
             ;;
     esac
-done <"$here/figures.table"
+done <"$work/table"
 finish

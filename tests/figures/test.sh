@@ -23,23 +23,23 @@ command=\$1
 printf '%s\n' "\$*" >>"$work/calls"
 shift
 for last; do :; done # the output
-if [ "\$command" = render ]; then "$program" render "\$@" --lines 20 --dump /dev/null --save-camera "$work/camera.json" --help >/dev/null; fi
+case \$command in render | vessel | surface) "$program" "\$command" "\$@" --save-camera "$work/camera.json" --help >/dev/null ;; esac
 : >"\$last"
 TEXT
 chmod +x "$work/program"
 
 "$script" "$work/program" "$work/all" >"$work/out" 2>"$work/err" || die "$(cat "$work/err")"
-figures=$(sed -n 's/^figure \([a-z0-9_]*\) .*/\1/p' "$root/examples/figures/figures.table")
+figures=$(sed -n 's/^figure \([a-z0-9_]*\) .*/\1/p' "$root"/examples/figures/*.table)
 for name in $figures; do
-    if [ "$name" = figure8_data ]; then
+    if [ "$name" = koehler8_data ]; then
         [ ! -e "$work/all/$name.png" ] || die "$name: was drawn without data"
-        grep -q "figure8_data: LINEAO_DATA" "$work/err" || die "$name: was left out without a word"
+        grep -q "koehler8_data: LINEAO_DATA" "$work/err" || die "$name: was left out without a word"
     else
         grep -qx "$work/all/$name.png" "$work/out" || die "$name: its path was not printed"
         grep -q "^sheet .*$work/all/$name.png" "$work/calls" || die "$name: has no sheet"
     fi
 done
-[ "$(grep -c '^render' "$work/calls")" -ge 40 ] || die "fewer than 40 panels"
+[ "$(grep -vc '^sheet' "$work/calls")" -ge 40 ] || die "fewer than 40 panels"
 for camera in "$root"/examples/figures/cameras/*.json; do
     grep -q "$camera" "$work/calls" || die "$camera: is used by no figure"
     "$program" render --lines 20 --camera "$camera" --save-camera "$work/camera.json" || die "$camera: cannot be read"
@@ -47,8 +47,8 @@ done
 if grep "@" "$work/calls"; then die "a place was not filled in"; fi
 
 # And one for real.
-FIGURES_SIZE=64x48 "$script" "$program" "$work/real" backdrop >"$work/out" || die "backdrop: failed"
-[ -s "$work/real/backdrop.png" ] || die "backdrop: there is no picture"
+FIGURES_SIZE=64x48 "$script" "$program" "$work/real" koehler_backdrop >"$work/out" || die "koehler_backdrop: failed"
+[ -s "$work/real/koehler_backdrop.png" ] || die "koehler_backdrop: there is no picture"
 
 if "$script" "$program" "$work/none" figure99 2>"$work/err"; then die "figure99: was taken"; fi
 grep -q "figure99: is no figure" "$work/err" || die "figure99: was not named"
