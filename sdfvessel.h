@@ -78,6 +78,8 @@ extern "C" {
     X(GRID_TREE, LAO_ERROR_INVALID_ARGUMENT, "the grid was built from another tree")               \
     X(SHAPES, LAO_ERROR_INVALID_ARGUMENT,                                                          \
       "a tree takes at most 64 shapes, of finite numbers, whose samples exist")                    \
+    X(MESH, LAO_ERROR_INVALID_ARGUMENT,                                                            \
+      "a mesh needs 1 to 2^24 triangles of at most 2^24 / 3 vertices that exist and are finite")   \
     X(RADIUS_MISSING, LAO_OK,                                                                      \
       "nodes have no radius (negative, no number or beyond 1e9 mm): 0 is taken")                   \
     X(RADIUS_ZERO, LAO_OK, "nodes have radius 0")                                                  \
@@ -475,8 +477,10 @@ SDV_API lao_result sdv_pull_push(const sdv_host *host, const sdv_pull_push_desc 
     X(surface_shininess, INT, 1, 1000, 40, 1, "", "", "Phong exponent of a surface")               \
     X(parameterization, ENUM, 0, 2, 0, 1, "", "off|background|on",                                 \
       "the surface that fills the void; and texture coordinates (u, v) for every pixel")           \
-    X(guide, ENUM, 0, 1, 0, 1, "", "contour|axis",                                                 \
-      "what u follows: the normals of contours, or the axes of vessels")                           \
+    X(guide, ENUM, 0, 1, 0, 1, "", "contour|own",                                                  \
+      "what u follows: the normals of contours, or the surface's own directions: axes of "         \
+      "vessels, "                                                                                  \
+      "those that came with a mesh")                                                               \
     X(guide_threshold, FLOAT, 0, 1, 0.2f, 0, "", "",                                               \
       "step of depth that is a contour, as part of the scene's diameter (t of L19)")               \
     X(ssp_period, FLOAT, 0.001f, 1000, 4, 0, "mm", "", "period of u and v on the surface")         \
@@ -489,7 +493,9 @@ SDV_API lao_result sdv_pull_push(const sdv_host *host, const sdv_pull_push_desc 
     X(void_style, ENUM, 0, 3, 0, 1, "", "plain|chromadepth|stipple|hatch",                         \
       "what is drawn behind vessels, where the parameterization is on (chromadepth: or "           \
       "background)")                                                                               \
-    X(isolines, INT, 0, 1000, 30, 0, "", "", "lines of depth of the chromadepth; 0: none")
+    X(isolines, INT, 0, 1000, 30, 0, "", "", "lines of depth of the chromadepth; 0: none")         \
+    X(ink_step, FLOAT, 0.001f, 1, 0.1f, 0, "", "",                                                 \
+      "how much of what a new solution changes of a place's ink shows in a frame; 1: all at once")
 
 /* What a vessel tree looks like; as lao_settings: zero is the default unless its bit is set. */
 typedef struct sdv_settings {
@@ -519,9 +525,23 @@ typedef struct sdv_object {
     lao_object_buffer buffers[7];
     lao_v4 box[2];
     lao_v4 shapes[1 + 4 * SDV_MOST_SHAPES];
-    uint8_t *colors; /* private */
+    void *memory; /* private, as what follows */
+    size_t size;
     lao_allocator allocator;
 } sdv_object;
+
+/* A mesh whose faces are drawn with ink: through the same passes, with position, normal and colour
+   of its nearest face in place of what a tree's rays hit (L19 3.4). No near misses, no field. */
+typedef struct sdv_mesh_desc {
+    uint32_t vertex_count, triangle_count;
+    const float *positions;    /* 3 per vertex, mm */
+    const float *normals;      /* 3 per vertex */
+    const uint32_t *triangles; /* 3 per triangle, any winding: both sides are seen */
+    const float *directions;   /* (Optional) 3 per vertex, of either sign: what u follows with
+                                  guide=own, the surer the longer, up to length 1; 0: nothing there.
+                                  vsf_curvatures of vesselsurface.h makes those of curvature */
+    const uint8_t *colors;     /* (Optional) RGBA per vertex, display values; NULL: paper white */
+} sdv_mesh_desc;
 
 /* Describes a grid for lao_object_create. `colors`: (Optional) 8 bytes a cone: RGBA at its first
    and at its second end, display values; NULL: all alike. Free with sdv_object_free. Fails with
@@ -533,6 +553,17 @@ SDV_API lao_result sdv_object_make(const sdv_host *host, const sdv_grid *grid,
    NULL_ARGUMENT, SHAPES. */
 SDV_API lao_result sdv_object_shapes(const sdv_host *host, const sdv_shapes *shapes,
                                      const float *colors, sdv_object *object);
+/* Describes a mesh for lao_object_create, with copies of all it needs. Free with sdv_object_free.
+   Fails with NULL_ARGUMENT, MESH, MEMORY. */
+SDV_API lao_result sdv_object_mesh(const sdv_host *host, const sdv_mesh_desc *desc,
+                                   sdv_object *object);
+/* Describes a surface that the host has drawn itself. Each frame names three images of its own
+   (lao_frame.imports; as large as the view, `supersampling` 1): "vessel_position" (RGBA32F; world,
+   mm; w 0 where there is a surface, -1 elsewhere), "vessel_normal" (RGBA32F; world, unit, towards
+   the viewer) and "vessel_color" (RGBA8); with guide=own "vessel_direction" (RGBA32F; world; w: how
+   sure, 0 .. 1) too. bounds: lower and upper corner (6 floats), mm. Fails with NULL_ARGUMENT. */
+SDV_API lao_result sdv_object_drawn(const sdv_host *host, const float *bounds, sdv_object *object);
+/* Fine on an all-zero one. */
 SDV_API void sdv_object_free(sdv_object *object);
 
 #ifdef __cplusplus
@@ -1412,7 +1443,7 @@ LAO_FN lao_v3 sdv_sheet_normal(lao_v3 dx, lao_v3 dy, lao_v3 towards) {
 
 /* ---- guiding field: directions without a sign (L19 3.5 with METHODS 7.1) */
 #define SDV_GUIDE_CONTOUR 0
-#define SDV_GUIDE_AXIS 1
+#define SDV_GUIDE_OWN 1
 #define SDV_CONTOUR_WEIGHT 0.2f /* w_f */
 /* Gradient of depth over three rows of three pixels, bottom up: a step reads as its height, as part
    of the scene's diameter. */
@@ -1443,7 +1474,9 @@ LAO_FN lao_v4 sdv_contour_tensor(lao_v2 gradient, lao_v3 normal, float threshold
     }
     return sdv_tensor(-gradient.x / rise, -gradient.y / rise, SDV_CONTOUR_WEIGHT);
 }
-/* Of a vessel's axis (view space): certain where it is seen from the side, nothing end-on. */
+/* Of a surface's own direction (view space): certain where it is seen from the side, nothing
+ * end-on.
+ */
 LAO_FN lao_v4 sdv_axis_tensor(lao_v3 axis) {
     lao_v3 a = lao_v3_unit(axis, lao_v3_make(0.0f, 0.0f, 0.0f));
     LAO_EXACT float across2 = a.x * a.x + a.y * a.y;
@@ -1759,6 +1792,26 @@ LAO_FN float sdv_style_ink(lao_int style, float u, float v, float darkness, floa
         return sdv_crosshatch_ink(a, b, dark, wide_u, wide_v);
     }
     return sdv_lines_ink(b, dark, wide_v);
+}
+/* White that a style's ink and a depth shadow's lines, which go the other way, leave of a pixel. */
+LAO_FN float sdv_style_paper(lao_int style, lao_v2 phase, float darkness, float shadow,
+                             float wide_u, float wide_v) {
+    LAO_EXACT float lines = sdv_lines_ink(phase.x / LAO_TURN, lao_clamp01(shadow), wide_u);
+    LAO_EXACT float left = 1.0f - lines;
+    if (style == SDV_STYLE_PLAIN || style == SDV_STYLE_SHADOW) {
+        return left;
+    }
+    LAO_EXACT float r =
+        left * (1.0f - sdv_style_ink(style, phase.x, phase.y, darkness, wide_u, wide_v));
+    return r;
+}
+/* Births and deaths of strokes and dots (which L19 5 leaves open). A place shows what its phases
+   say, and a rest of what it showed before these changed; each frame lessens the rest by `step` of
+   it. before: white by the recalled phases and the last frame's rest; now: by the new phases. As
+   both move with the surface, only what a solution changed fades. */
+LAO_FN float sdv_ink_rest(float before, float now, float step) {
+    LAO_EXACT float r = (lao_clamp01(before) - now) * (1.0f - step);
+    return lao_abs(r) < 0.004f ? 0.0f : r; /* below what a display shows */
 }
 /* What a head light leaves of white, without a highlight. */
 LAO_FN float sdv_style_tone(float facing, float ambient, float diffuse, float light) {
@@ -4661,6 +4714,7 @@ SDV_API lao_result sdv_pull_push(const sdv_host *host, const sdv_pull_push_desc 
 // clang-format off
 #define SDV__WRITE(image) {image, LAO_LEVEL_SAME, 0, LAO_PHASE_THIS, LAO_LOAD_DISCARD}
 #define SDV__READ(image) {image, LAO_LEVEL_SAME, 0, LAO_PHASE_THIS, LAO_LOAD_DISCARD}
+#define SDV__CLEAR(image) {image, LAO_LEVEL_SAME, 0, LAO_PHASE_THIS, LAO_LOAD_CLEAR}
 #define SDV__KEEP(image) {image, LAO_LEVEL_SAME, 0, LAO_PHASE_THIS, LAO_LOAD_KEEP}
 #define SDV__OTHER(image) {image, LAO_LEVEL_SAME, 0, LAO_PHASE_OTHER, LAO_LOAD_DISCARD}
 #define SDV__BEFORE(image) {image, LAO_LEVEL_SAME, 0, LAO_PHASE_PREVIOUS, LAO_LOAD_DISCARD}
@@ -4669,21 +4723,29 @@ SDV_API lao_result sdv_pull_push(const sdv_host *host, const sdv_pull_push_desc 
 #define SDV__TOP(image) {image, LAO_LEVEL_INDEX, 31, LAO_PHASE_THIS, LAO_LOAD_DISCARD}
 #define SDV__BACKGROUND {"parameterization", '>', 0}
 #define SDV__PARAMETERIZED {"parameterization", '>', 1}
-#define SDV__WITH_BACKGROUND {{"#vessel_cells", '>', 0}, SDV__BACKGROUND}
-#define SDV__WITH_PHASES {{"#vessel_cells", '>', 0}, SDV__PARAMETERIZED}
-#define SDV__WITH_TREE {{"#vessel_cells", '>', 0}, {"#vessel_shapes", '=', 0}}
-#define SDV__WITH_SHAPES {{"#vessel_cells", '>', 0}, {"#vessel_shapes", '>', 0}}
+#define SDV__WITH_BACKGROUND {{"#vessel_box", '>', 0}, SDV__BACKGROUND}
+#define SDV__WITH_PHASES {{"#vessel_box", '>', 0}, SDV__PARAMETERIZED}
+/* a tree, one with shapes, and what is only seen: a mesh, a surface that the host drew */
+#define SDV__TREE {"#vessel_cells", '>', 0}, {"#vessel_shapes", '=', 0}
+#define SDV__SHAPES {"#vessel_cells", '>', 0}, {"#vessel_shapes", '>', 0}
+#define SDV__SEEN {"#vessel_box", '>', 0}, {"#vessel_cells", '=', 0}
+#define SDV__WITH_TREE {SDV__TREE}
+#define SDV__WITH_SHAPES {SDV__SHAPES}
 
 static const lao_buffer_row sdv__buffers[] = {
     {"vessel_box", LAO_FORMAT_RGBA32F}, {"vessel_cells", LAO_FORMAT_RGBA32F}, {"vessel_ids", LAO_FORMAT_R32F},
     {"vessel_cones", LAO_FORMAT_RGBA32F}, {"vessel_colors", LAO_FORMAT_RGBA8},
-    {"vessel_shapes", LAO_FORMAT_RGBA32F}, {"vessel_fields", LAO_FORMAT_R32F}
+    {"vessel_shapes", LAO_FORMAT_RGBA32F}, {"vessel_fields", LAO_FORMAT_R32F},
+    {"vessel_vertices", LAO_FORMAT_RGBA32F}, {"vessel_triangles", LAO_FORMAT_RGBA32F}
 };
 
 static const lao_image_row sdv__images[] = {
     {"vessel_position", LAO_FORMAT_RGBA32F, LAO_SIZE_FULL, 0, 0, NULL, 0, LAO_ENCODING_PLAIN, {0, 0, 0, -1}, {NULL, 0, 0}, {"position.X", "position.Y", "position.Z", "segment.V"}},
     {"vessel_normal",   LAO_FORMAT_RGBA32F, LAO_SIZE_FULL, 0, 0, NULL, 0, LAO_ENCODING_PLAIN, {0, 0, 0, 0},  {NULL, 0, 0}, {"normal.X", "normal.Y", "normal.Z", "dmin.V"}},
     {"vessel_ray",      LAO_FORMAT_RGBA32F, LAO_SIZE_FULL, 0, 0, NULL, 0, LAO_ENCODING_PLAIN, {0, 0, 0, 0},  {NULL, 0, 0}, {NULL, NULL, NULL, NULL}},
+    {"vessel_color",    LAO_FORMAT_RGBA8,   LAO_SIZE_FULL, 0, 0, NULL, 0, LAO_ENCODING_PLAIN, {0, 0, 0, 0},  {NULL, 0, 0}, {NULL, NULL, NULL, NULL}},
+    {"vessel_direction", LAO_FORMAT_RGBA32F, LAO_SIZE_FULL, 0, 0, NULL, 0, LAO_ENCODING_PLAIN, {0, 0, 0, 0}, {"guide", '>', 0}, {NULL, NULL, NULL, NULL}},
+    {"vessel_z",        LAO_FORMAT_D32F,    LAO_SIZE_FULL, 0, 0, NULL, 0, LAO_ENCODING_PLAIN, {1, 0, 0, 0},  {NULL, 0, 0}, {NULL, NULL, NULL, NULL}},
     /* where there is a parameterization: of pyramids, levels down to one texel; what each holds stands in its shader */
     {"vessel_depth", LAO_FORMAT_RGBA32F, LAO_SIZE_FULL, 0, 0, "*", 0, LAO_ENCODING_PLAIN, {0, 0, 0, 0}, SDV__BACKGROUND, {NULL, NULL, NULL, NULL}},
     {"vessel_filled", LAO_FORMAT_RGBA32F, LAO_SIZE_FULL, 0, 0, "*", 0, LAO_ENCODING_PLAIN, {0, 0, 0, 0}, SDV__BACKGROUND, {NULL, NULL, NULL, NULL}},
@@ -4697,7 +4759,8 @@ static const lao_image_row sdv__images[] = {
     {"vessel_across", LAO_FORMAT_RGBA32F, LAO_SIZE_FULL, 0, 0, "*", 0, LAO_ENCODING_PLAIN, {0, 0, 0, 0}, SDV__PARAMETERIZED, {NULL, NULL, NULL, NULL}},
     {"vessel_recalled", LAO_FORMAT_RGBA32F, LAO_SIZE_FULL, 0, 0, "*", 0, LAO_ENCODING_PLAIN, {0, 0, 0, 0}, SDV__PARAMETERIZED, {NULL, NULL, NULL, NULL}},
     {"vessel_phase", LAO_FORMAT_RGBA32F, LAO_SIZE_FULL, 0, 0, "*", 0, LAO_ENCODING_PLAIN, {0, 0, 0, 0}, SDV__PARAMETERIZED, {NULL, NULL, NULL, NULL}},
-    {"vessel_uv", LAO_FORMAT_RGBA32F, LAO_SIZE_FULL, 0, 0, NULL, LAO_IMAGE_HISTORY, LAO_ENCODING_PLAIN, {0, 0, 0, 0}, SDV__PARAMETERIZED, {"uv.U", "uv.V", "guide.X", "guide.Y"}}
+    {"vessel_uv", LAO_FORMAT_RGBA32F, LAO_SIZE_FULL, 0, 0, NULL, LAO_IMAGE_HISTORY, LAO_ENCODING_PLAIN, {0, 0, 0, 0}, SDV__PARAMETERIZED, {"uv.U", "uv.V", "guide.X", "guide.Y"}},
+    {"vessel_ink", LAO_FORMAT_RGBA32F, LAO_SIZE_FULL, 0, 0, NULL, LAO_IMAGE_HISTORY, LAO_ENCODING_PLAIN, {1, 0, 0, 0}, SDV__PARAMETERIZED, {NULL, NULL, NULL, NULL}}
 };
 
 static const lao_pass_row sdv__passes[] = {
@@ -4707,6 +4770,9 @@ static const lao_pass_row sdv__passes[] = {
     {"vessel_carve", LAO_PASS_FULLSCREEN, "vessel_carve", 0, LAO_STAGE_DRAW, LAO_SCOPE_PER_SET, LAO_REPEAT_NONE, NULL, LAO_BLEND_NONE, LAO_DEPTH_NONE, LAO_CULL_NONE, SDV__WITH_SHAPES,
      {SDV__WRITE("vessel_position"), SDV__WRITE("vessel_normal"), SDV__WRITE("vessel_ray")},
      {SDV__READ("#vessel_box"), SDV__READ("#vessel_cells"), SDV__READ("#vessel_ids"), SDV__READ("#vessel_cones"), SDV__READ("#vessel_shapes"), SDV__READ("#vessel_fields")}},
+    {"vessel_mesh", LAO_PASS_DRAW_MESH, "vessel_mesh", 0, LAO_STAGE_DRAW, LAO_SCOPE_PER_SET, LAO_REPEAT_NONE, NULL, LAO_BLEND_NONE, LAO_DEPTH_NEARER, LAO_CULL_NONE, {{"#vessel_triangles", '>', 0}},
+     {SDV__CLEAR("vessel_position"), SDV__CLEAR("vessel_normal"), SDV__CLEAR("vessel_color"), SDV__CLEAR("vessel_direction"), SDV__CLEAR("vessel_z")},
+     {SDV__READ("#vessel_vertices"), SDV__READ("#vessel_triangles"), SDV__READ("#vessel_colors")}},
     /* the void: depth pulled up and pushed down, then a place and a normal for every pixel (L19 3.4) */
     {"vessel_depth", LAO_PASS_FULLSCREEN, "vessel_depth", 0, LAO_STAGE_SHADE, LAO_SCOPE_PER_SET, LAO_REPEAT_NONE, NULL, LAO_BLEND_NONE, LAO_DEPTH_NONE, LAO_CULL_NONE, SDV__WITH_BACKGROUND,
      {SDV__WRITE("vessel_depth")},
@@ -4720,9 +4786,12 @@ static const lao_pass_row sdv__passes[] = {
     {"vessel_fill", LAO_PASS_FULLSCREEN, "vessel_fill", 0, LAO_STAGE_SHADE, LAO_SCOPE_PER_SET, LAO_REPEAT_LEVELS_DOWN, NULL, LAO_BLEND_NONE, LAO_DEPTH_NONE, LAO_CULL_NONE, SDV__WITH_BACKGROUND,
      {SDV__WRITE("vessel_filled")},
      {SDV__READ("vessel_depth"), SDV__COARSER("vessel_filled")}},
-    {"vessel_surface", LAO_PASS_FULLSCREEN, "vessel_surface", 0, LAO_STAGE_SHADE, LAO_SCOPE_PER_SET, LAO_REPEAT_NONE, NULL, LAO_BLEND_NONE, LAO_DEPTH_NONE, LAO_CULL_NONE, SDV__WITH_BACKGROUND,
+    {"vessel_surface", LAO_PASS_FULLSCREEN, "vessel_surface", 0, LAO_STAGE_SHADE, LAO_SCOPE_PER_SET, LAO_REPEAT_NONE, NULL, LAO_BLEND_NONE, LAO_DEPTH_NONE, LAO_CULL_NONE, {{"#vessel_cells", '>', 0}, SDV__BACKGROUND},
      {SDV__WRITE("vessel_surface"), SDV__WRITE("vessel_bgnormal"), SDV__WRITE("vessel_place"), SDV__WRITE("vessel_facing"), SDV__WRITE("vessel_tensor")},
-     {SDV__READ("vessel_filled"), SDV__READ("vessel_depth"), SDV__READ("vessel_position"), SDV__READ("vessel_normal"), SDV__READ("#vessel_cones")}},
+     {SDV__READ("vessel_filled"), SDV__READ("vessel_depth"), SDV__READ("vessel_position"), SDV__READ("vessel_normal"), SDV__READ("#vessel_cones"), SDV__READ("vessel_normal")}},
+    {"vessel_surface_seen", LAO_PASS_FULLSCREEN, "vessel_surface", 1, LAO_STAGE_SHADE, LAO_SCOPE_PER_SET, LAO_REPEAT_NONE, NULL, LAO_BLEND_NONE, LAO_DEPTH_NONE, LAO_CULL_NONE, {SDV__SEEN, SDV__BACKGROUND},
+     {SDV__WRITE("vessel_surface"), SDV__WRITE("vessel_bgnormal"), SDV__WRITE("vessel_place"), SDV__WRITE("vessel_facing"), SDV__WRITE("vessel_tensor")},
+     {SDV__READ("vessel_filled"), SDV__READ("vessel_depth"), SDV__READ("vessel_position"), SDV__READ("vessel_normal"), SDV__READ("#vessel_cones"), SDV__READ("vessel_direction")}},
     /* the guiding field of the contours (L19 3.5) */
     {"vessel_place_up", LAO_PASS_FULLSCREEN, "vessel_gather", 0, LAO_STAGE_SHADE, LAO_SCOPE_PER_SET, LAO_REPEAT_LEVELS_UP, NULL, LAO_BLEND_NONE, LAO_DEPTH_NONE, LAO_CULL_NONE, SDV__WITH_PHASES,
      {SDV__WRITE("vessel_place"), SDV__WRITE("vessel_facing")},
@@ -4739,7 +4808,7 @@ static const lao_pass_row sdv__passes[] = {
     /* phases: the last frame's pulled up, then pushed down and optimised (L19 3.6, 3.7) */
     {"vessel_recall", LAO_PASS_FULLSCREEN, "vessel_recall", 0, LAO_STAGE_SHADE, LAO_SCOPE_PER_SET, LAO_REPEAT_NONE, NULL, LAO_BLEND_NONE, LAO_DEPTH_NONE, LAO_CULL_NONE, SDV__WITH_PHASES,
      {SDV__WRITE("vessel_recalled")},
-     {SDV__READ("vessel_surface"), SDV__READ("vessel_bgnormal"), SDV__READ("vessel_along"), SDV__READ("vessel_across"), SDV__BEFORE("vessel_surface"), SDV__BEFORE("vessel_uv")}},
+     {SDV__READ("vessel_surface"), SDV__READ("vessel_bgnormal"), SDV__READ("vessel_along"), SDV__READ("vessel_across"), SDV__BEFORE("vessel_surface"), SDV__BEFORE("vessel_uv"), SDV__BEFORE("vessel_ink")}},
     {"vessel_recall_up", LAO_PASS_FULLSCREEN, "vessel_recall_up", 0, LAO_STAGE_SHADE, LAO_SCOPE_PER_SET, LAO_REPEAT_LEVELS_UP, NULL, LAO_BLEND_NONE, LAO_DEPTH_NONE, LAO_CULL_NONE, SDV__WITH_PHASES,
      {SDV__WRITE("vessel_recalled")},
      {SDV__FINER("vessel_recalled"), SDV__FINER("vessel_place"), SDV__FINER("vessel_along"), SDV__FINER("vessel_across"), SDV__READ("vessel_place"), SDV__READ("vessel_along"), SDV__READ("vessel_across")}},
@@ -4755,18 +4824,43 @@ static const lao_pass_row sdv__passes[] = {
     {"vessel_uv", LAO_PASS_FULLSCREEN, "vessel_uv", 0, LAO_STAGE_SHADE, LAO_SCOPE_PER_SET, LAO_REPEAT_NONE, NULL, LAO_BLEND_NONE, LAO_DEPTH_NONE, LAO_CULL_NONE, SDV__WITH_PHASES,
      {SDV__WRITE("vessel_uv")},
      {SDV__READ("vessel_phase"), SDV__READ("vessel_spread"), SDV__READ("vessel_along"), SDV__READ("vessel_surface"), SDV__BEFORE("vessel_surface"), SDV__BEFORE("vessel_uv")}},
+    /* strokes and dots, where phases changed faded over */
+    {"vessel_ink", LAO_PASS_FULLSCREEN, "vessel_ink", 0, LAO_STAGE_SHADE, LAO_SCOPE_PER_SET, LAO_REPEAT_NONE, NULL, LAO_BLEND_NONE, LAO_DEPTH_NONE, LAO_CULL_NONE, {SDV__TREE, SDV__PARAMETERIZED},
+     {SDV__WRITE("vessel_ink")},
+     {SDV__READ("vessel_position"), SDV__READ("vessel_normal"), SDV__READ("vessel_ray"),
+      SDV__READ("#vessel_box"), SDV__READ("#vessel_cells"), SDV__READ("#vessel_ids"), SDV__READ("#vessel_cones"),
+      SDV__READ("#vessel_shapes"), SDV__READ("#vessel_fields"), SDV__READ("vessel_uv"), SDV__READ("vessel_surface"),
+      SDV__READ("vessel_bgnormal"), SDV__READ("vessel_along"), SDV__READ("vessel_across"), SDV__READ("vessel_recalled")}},
+    {"vessel_ink_cut", LAO_PASS_FULLSCREEN, "vessel_ink", 1, LAO_STAGE_SHADE, LAO_SCOPE_PER_SET, LAO_REPEAT_NONE, NULL, LAO_BLEND_NONE, LAO_DEPTH_NONE, LAO_CULL_NONE, {SDV__SHAPES, SDV__PARAMETERIZED},
+     {SDV__WRITE("vessel_ink")},
+     {SDV__READ("vessel_position"), SDV__READ("vessel_normal"), SDV__READ("vessel_ray"),
+      SDV__READ("#vessel_box"), SDV__READ("#vessel_cells"), SDV__READ("#vessel_ids"), SDV__READ("#vessel_cones"),
+      SDV__READ("#vessel_shapes"), SDV__READ("#vessel_fields"), SDV__READ("vessel_uv"), SDV__READ("vessel_surface"),
+      SDV__READ("vessel_bgnormal"), SDV__READ("vessel_along"), SDV__READ("vessel_across"), SDV__READ("vessel_recalled")}},
+    {"vessel_ink_seen", LAO_PASS_FULLSCREEN, "vessel_ink", 2, LAO_STAGE_SHADE, LAO_SCOPE_PER_SET, LAO_REPEAT_NONE, NULL, LAO_BLEND_NONE, LAO_DEPTH_NONE, LAO_CULL_NONE, {SDV__SEEN, SDV__PARAMETERIZED},
+     {SDV__WRITE("vessel_ink")},
+     {SDV__READ("vessel_position"), SDV__READ("vessel_normal"), SDV__READ("vessel_normal"),
+      SDV__READ("#vessel_box"), SDV__READ("#vessel_cells"), SDV__READ("#vessel_ids"), SDV__READ("#vessel_cones"),
+      SDV__READ("#vessel_shapes"), SDV__READ("#vessel_fields"), SDV__READ("vessel_uv"), SDV__READ("vessel_surface"),
+      SDV__READ("vessel_bgnormal"), SDV__READ("vessel_along"), SDV__READ("vessel_across"), SDV__READ("vessel_recalled")}},
     {"vessel_shade", LAO_PASS_FULLSCREEN, "vessel_shade", 0, LAO_STAGE_SHADE, LAO_SCOPE_PER_SET, LAO_REPEAT_NONE, NULL, LAO_BLEND_NONE, LAO_DEPTH_NEARER, LAO_CULL_NONE, SDV__WITH_TREE,
      {SDV__KEEP("shaded"), SDV__KEEP("zbuffer")},
      {SDV__READ("vessel_position"), SDV__READ("vessel_normal"), SDV__READ("vessel_ray"), SDV__READ("#vessel_colors"),
       SDV__READ("#vessel_box"), SDV__READ("#vessel_cells"), SDV__READ("#vessel_ids"), SDV__READ("#vessel_cones"),
       SDV__READ("#vessel_shapes"), SDV__READ("#vessel_fields"),
-      SDV__READ("vessel_uv"), SDV__READ("vessel_surface"), SDV__READ("vessel_bgnormal"), SDV__READ("vessel_along"), SDV__READ("vessel_across")}},
+      SDV__READ("vessel_surface"), SDV__READ("vessel_bgnormal"), SDV__READ("vessel_ink"), SDV__READ("vessel_normal")}},
     {"vessel_shade_cut", LAO_PASS_FULLSCREEN, "vessel_shade", 1, LAO_STAGE_SHADE, LAO_SCOPE_PER_SET, LAO_REPEAT_NONE, NULL, LAO_BLEND_NONE, LAO_DEPTH_NEARER, LAO_CULL_NONE, SDV__WITH_SHAPES,
      {SDV__KEEP("shaded"), SDV__KEEP("zbuffer")},
      {SDV__READ("vessel_position"), SDV__READ("vessel_normal"), SDV__READ("vessel_ray"), SDV__READ("#vessel_colors"),
       SDV__READ("#vessel_box"), SDV__READ("#vessel_cells"), SDV__READ("#vessel_ids"), SDV__READ("#vessel_cones"),
       SDV__READ("#vessel_shapes"), SDV__READ("#vessel_fields"),
-      SDV__READ("vessel_uv"), SDV__READ("vessel_surface"), SDV__READ("vessel_bgnormal"), SDV__READ("vessel_along"), SDV__READ("vessel_across")}}
+      SDV__READ("vessel_surface"), SDV__READ("vessel_bgnormal"), SDV__READ("vessel_ink"), SDV__READ("vessel_normal")}},
+    {"vessel_shade_seen", LAO_PASS_FULLSCREEN, "vessel_shade", 2, LAO_STAGE_SHADE, LAO_SCOPE_PER_SET, LAO_REPEAT_NONE, NULL, LAO_BLEND_NONE, LAO_DEPTH_NEARER, LAO_CULL_NONE, {SDV__SEEN},
+     {SDV__KEEP("shaded"), SDV__KEEP("zbuffer")},
+     {SDV__READ("vessel_position"), SDV__READ("vessel_normal"), SDV__READ("vessel_normal"), SDV__READ("#vessel_colors"),
+      SDV__READ("#vessel_box"), SDV__READ("#vessel_cells"), SDV__READ("#vessel_ids"), SDV__READ("#vessel_cones"),
+      SDV__READ("#vessel_shapes"), SDV__READ("#vessel_fields"),
+      SDV__READ("vessel_surface"), SDV__READ("vessel_bgnormal"), SDV__READ("vessel_ink"), SDV__READ("vessel_color")}}
 };
 
 static const lao_setting_row sdv__settings[] = {
@@ -4790,11 +4884,16 @@ SDV_API const lao_module *sdv_module(void) {
     return &sdv__module;
 }
 
-static void sdv__object_buffer(sdv_object *object, uint32_t index, const void *data,
-                               uint32_t count) {
-    object->buffers[index].name = sdv__buffers[index].name;
+/* row: of sdv__buffers */
+static void sdv__object_buffer_of(sdv_object *object, uint32_t index, uint32_t row,
+                                  const void *data, uint32_t count) {
+    object->buffers[index].name = sdv__buffers[row].name;
     object->buffers[index].data = data;
     object->buffers[index].texel_count = count;
+}
+static void sdv__object_buffer(sdv_object *object, uint32_t index, const void *data,
+                               uint32_t count) {
+    sdv__object_buffer_of(object, index, index, data, count);
 }
 
 SDV_API lao_result sdv_object_make(const sdv_host *host, const sdv_grid *grid,
@@ -4818,7 +4917,8 @@ SDV_API lao_result sdv_object_make(const sdv_host *host, const sdv_grid *grid,
     }
     memset(object, 0, sizeof *object);
     object->allocator = allocator;
-    object->colors = own;
+    object->memory = own;
+    object->size = size;
     object->box[0] = lao_v4_make(grid->origin.x, grid->origin.y, grid->origin.z, grid->cell);
     object->box[1] = lao_v4_make((float)grid->size[0], (float)grid->size[1], (float)grid->size[2],
                                  (float)grid->cone_count);
@@ -4891,11 +4991,99 @@ SDV_API lao_result sdv_object_shapes(const sdv_host *host, const sdv_shapes *sha
     return LAO_OK;
 }
 
+/* Fills the buffers of a mesh, which stand one behind the other in `memory`: three texels a vertex,
+   one a triangle, colours. 0: the mesh is none. */
+static int sdv__mesh_fill(const sdv_mesh_desc *d, lao_v4 *vertices, lao_v4 *triangles,
+                          uint8_t *colors, float bounds[2][3]) {
+    uint32_t i, k;
+    for (i = 0; i < d->vertex_count; i++) {
+        const float *p = d->positions + 3 * (size_t)i, *n = d->normals + 3 * (size_t)i;
+        const float *z = d->directions ? d->directions + 3 * (size_t)i : NULL;
+        lao_v4 *to = vertices + 3 * (size_t)i;
+        for (k = 0; k < 3; k++) {
+            if (!(fabsf(p[k]) <= 1e9f && fabsf(n[k]) <= 1e9f && (!z || fabsf(z[k]) <= 1e9f))) {
+                return 0;
+            }
+            bounds[0][k] = i ? lao_min(bounds[0][k], p[k]) : p[k];
+            bounds[1][k] = i ? lao_max(bounds[1][k], p[k]) : p[k];
+        }
+        to[0] = lao_v4_make(p[0], p[1], p[2], 1.0f);
+        to[1] = lao_v4_make(n[0], n[1], n[2], 0.0f);
+        to[2] = lao_v4_make(0.0f, 0.0f, 0.0f, 0.0f);
+        if (z) {
+            float sure = lao_sqrt(z[0] * z[0] + z[1] * z[1] + z[2] * z[2]);
+            to[2] = lao_v4_make(z[0], z[1], z[2], lao_min(sure, 1.0f));
+        }
+    }
+    for (i = 0; i < d->triangle_count; i++) {
+        const uint32_t *t = d->triangles + 3 * (size_t)i;
+        if (t[0] >= d->vertex_count || t[1] >= d->vertex_count || t[2] >= d->vertex_count) {
+            return 0;
+        }
+        triangles[i] = lao_v4_make((float)t[0], (float)t[1], (float)t[2], 0.0f);
+    }
+    for (i = 0; i < 4 * d->vertex_count; i++) {
+        colors[i] = d->colors ? d->colors[i] : 255;
+    }
+    return 1;
+}
+
+SDV_API lao_result sdv_object_drawn(const sdv_host *host, const float *bounds, sdv_object *object) {
+    if (!bounds || !object) {
+        return sdv__fail(host, SDV_LOG_NULL_ARGUMENT, "sdv_object_drawn");
+    }
+    memset(object, 0, sizeof *object);
+    object->allocator = sdv__allocator(host);
+    memcpy(object->desc.bounds, bounds, sizeof object->desc.bounds);
+    sdv__object_buffer(object, 0, object->box, 2);
+    object->desc.buffers = object->buffers;
+    object->desc.buffer_count = 1;
+    return LAO_OK;
+}
+
+SDV_API lao_result sdv_object_mesh(const sdv_host *host, const sdv_mesh_desc *desc,
+                                   sdv_object *object) {
+    lao_allocator allocator = sdv__allocator(host);
+    const uint32_t most = 1u << 24;
+    float bounds[2][3];
+    lao_v4 *memory;
+    size_t size;
+    if (!desc || !object || !desc->positions || !desc->normals || !desc->triangles) {
+        return sdv__fail(host, SDV_LOG_NULL_ARGUMENT, "sdv_object_mesh");
+    }
+    if (!desc->vertex_count || !desc->triangle_count || desc->vertex_count > most / 3 ||
+        desc->triangle_count > most) {
+        return sdv__fail(host, SDV_LOG_MESH, "%u vertices, %u triangles", desc->vertex_count,
+                         desc->triangle_count);
+    }
+    size = (3 * (size_t)desc->vertex_count + desc->triangle_count) * sizeof *memory +
+           4 * (size_t)desc->vertex_count;
+    memory = (lao_v4 *)allocator.allocate(allocator.user, size);
+    if (!memory) {
+        return sdv__fail(host, SDV_LOG_MEMORY, "a mesh of %u vertices", desc->vertex_count);
+    }
+    if (!sdv__mesh_fill(desc, memory, memory + 3 * (size_t)desc->vertex_count,
+                        (uint8_t *)(memory + 3 * (size_t)desc->vertex_count + desc->triangle_count),
+                        bounds)) {
+        allocator.release(allocator.user, memory, size);
+        return sdv__fail(host, SDV_LOG_MESH, NULL);
+    }
+    sdv_object_drawn(host, bounds[0], object);
+    object->memory = memory;
+    object->size = size;
+    object->desc.triangle_count = desc->triangle_count;
+    object->desc.buffer_count = 4;
+    sdv__object_buffer_of(object, 1, 7, memory, 3 * desc->vertex_count);
+    memory += 3 * (size_t)desc->vertex_count;
+    sdv__object_buffer_of(object, 2, 8, memory, desc->triangle_count);
+    sdv__object_buffer_of(object, 3, 4, memory + desc->triangle_count, desc->vertex_count);
+    return LAO_OK;
+}
+
 SDV_API void sdv_object_free(sdv_object *object) {
-    if (object && object->colors) {
-        object->allocator.release(object->allocator.user, object->colors,
-                                  4 * (size_t)object->buffers[4].texel_count);
-        object->colors = NULL;
+    if (object && object->memory) {
+        object->allocator.release(object->allocator.user, object->memory, object->size);
+        object->memory = NULL;
     }
 }
 

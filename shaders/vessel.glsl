@@ -85,3 +85,32 @@ sdv_solid_sample sdv_solid_at(samplerBuffer cells, samplerBuffer ids, samplerBuf
     r.solid = sdv_solid_add_all(shapes, fields, tree, p);
     return r;
 }
+/* ---- light and ink */
+/* Light that field occlusion leaves at p with normal n (sdv_openness); from within a vessel the room inside counts. */
+float sdv_light_at(samplerBuffer cells, samplerBuffer ids, samplerBuffer cones, samplerBuffer shapes,
+                   samplerBuffer fields, sdv_box b, lao_v3 p, lao_v3 n, bool inside, bool shaped) {
+    float reach = 0.01 * lao_setting_occlusion_reach * lao_frame.depth.z;
+    float closed = 0.0;
+    for (int i = 0; i < SDV_OPEN_SAMPLES; i++) {
+        float place = sdv_open_place(reach, i);
+        lao_v3 q = lao_v3_along(p, n, place);
+        float d = sdv_near_at(cells, ids, cones, b, texelFetch(cells, sdv_cell_at(b, q)), q, lao_v3_make(0.0, 0.0, 1.0)).distance;
+        if (shaped) {
+            d = sdv_solid_add_all(shapes, fields, sdv_solid_start(d), q).distance;
+        }
+        closed = sdv_open_add(closed, inside ? -d : d, place, i);
+    }
+    return sdv_dimmed(1.0, 1.0 - sdv_open_result(closed), lao_setting_occlusion_strength);
+}
+/* How dark the depth shadow at a traced pixel is; normal, ray: its texels. */
+float sdv_depth_shadow_at(vec4 normal, vec4 ray) {
+    return sdv_depth_shadow(normal.w, ray.y, ray.x, lao_setting_shadow_ratio,
+                            0.01 * lao_setting_shadow_width * lao_frame.depth.z, lao_setting_shadow_softness);
+}
+/* Periods per pixel along z at p, a place of a surface of normal n. */
+float sdv_footprint_at(lao_v3 z, lao_v3 n, lao_v3 p, lao_v3 direction, float period) {
+    lao_v3 zero = lao_v3_make(0.0, 0.0, 0.0);
+    float mm = sdv_pixel_size(lao_frame.ray, sdv_depth_of(lao_frame.view, p), lao_frame.depth.w);
+    return sdv_style_footprint(z, n, lao_v3_unit(lao_frame.world.x.xyz, zero), lao_v3_unit(lao_frame.world.y.xyz, zero),
+                               direction, mm, period);
+}

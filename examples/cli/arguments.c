@@ -64,6 +64,7 @@ static const flag_row flags[] = {
     {"--subtract", NULL, "SHAPE", FLAG_SHAPE, CLI_VESSEL, ALL(vessel.shapes), "2", "cut away sphere:X,Y,Z,R, box:X,Y,Z,X,Y,Z (two corners), plane:NX,NY,NZ,D (where n.p < D) or the inside of a FILE (mesh or tree)"},
     {"--intersect", NULL, "SHAPE", FLAG_SHAPE, CLI_VESSEL, ALL(vessel.shapes), "1", "keep what is inside; the shapes are applied in the order of the flags"},
     {"--union", NULL, "SHAPE", FLAG_SHAPE, CLI_VESSEL, ALL(vessel.shapes), "0", "add the shape"},
+    {"--surface", NULL, "NAME", FLAG_TEXT, CLI_VESSEL, ALL(vessel.surface), NULL, "without a FILE: an embedded surface instead of a tree: liver, aneurysm, aorta or bone"},
     {"--nodes", NULL, "N", FLAG_COUNT, CLI_VESSEL, ALL(vessel.nodes), NULL, "of the embedded tree, when no TREE is given (3000)"},
     {"--cameras", NULL, "FILE.json", FLAG_TEXT, CLI_VESSEL, ALL(vessel.cameras), NULL, "an array of cameras: one picture for each"},
     {"--frames", NULL, "N", FLAG_COUNT, CLI_VESSEL, ALL(frames), NULL, "pictures of one turn around the tree"},

@@ -242,9 +242,15 @@ static bool render(cli_tree *tree) {
 static void add_warnings(const cli_tree *tree, cJSON *list) {
     const io_tree *read = &tree->contents.tree;
     const sdv_tree *t = &tree->vessel.tree;
-    for (uint32_t i = 0; i < read->warning_count + t->warning_count; i++) {
+    const io_mesh *surface = &tree->contents.mesh;
+    uint32_t of_surface = surface->warning_count + tree->mesh.warning_count;
+    for (uint32_t i = 0; i < read->warning_count + t->warning_count + of_surface; i++) {
         char text[256];
-        if (i < read->warning_count)
+        if (tree->mesh.vertex_count && i < surface->warning_count)
+            snprintf(text, sizeof text, "%s", surface->warnings[i]);
+        else if (tree->mesh.vertex_count)
+            vsf_mesh_warning_text(&tree->mesh, i - surface->warning_count, text, sizeof text);
+        else if (i < read->warning_count)
             snprintf(text, sizeof text, "%s", read->warnings[i]);
         else
             sdv_tree_warning_text(t, i - read->warning_count, text, sizeof text);
@@ -259,6 +265,10 @@ static bool report(const cli_tree *tree) {
     const sdv_tree_info *info = &tree->vessel.tree.info;
     cJSON *json = cJSON_CreateObject();
     cJSON_AddStringToObject(json, tree->source->path ? "path" : "scene", tree->name);
+    if (tree->mesh.vertex_count) {
+        cJSON_AddNumberToObject(json, "vertices", tree->mesh.vertex_count);
+        cJSON_AddNumberToObject(json, "triangles", tree->mesh.triangle_count);
+    }
     cJSON_AddNumberToObject(json, "nodes", info->nodes);
     cJSON_AddNumberToObject(json, "segments", info->segments);
     cJSON_AddNumberToObject(json, "roots", info->roots);

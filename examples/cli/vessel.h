@@ -30,6 +30,7 @@ typedef struct cli_tree {
     sdv_grid grid;
     double grid_seconds;
     uint8_t *colors; /* owned; 8 per cone; NULL: one colour */
+    vsf_mesh mesh;   /* instead of a tree: a surface, positions as the tree's */
     sdv_object object;
     sdv_settings settings;
     cli_scene scene; /* one set that has the object */
@@ -41,6 +42,11 @@ bool cli_tree_load(const cli_options *options, cli_tree *out);
 /* Then: field, colours, object and scene, for rendering. False: reported. */
 bool cli_tree_prepare(cli_tree *tree);
 void cli_tree_free(cli_tree *tree);
+
+/* A surface instead of a tree: that of the file, once it is read, or --surface. False: reported. */
+bool cli_tree_mesh(cli_tree *tree);
+/* Its object. False: reported. */
+bool cli_tree_mesh_object(cli_tree *tree);
 
 /* Reads --subtract and its like into tree->carving. False: reported. */
 bool cli_carving_make(cli_tree *tree);

@@ -78,7 +78,8 @@ static void flat_field(screen *s, int kind, int flips) {
 static double dot(lao_v4 a, lao_v4 b) {
     return (double)a.x * (double)b.x + (double)a.y * (double)b.y + (double)a.z * (double)b.z;
 }
-/* What is left of the energy between neighbours: RMS of the prediction's error, radians. */
+/* What is left of the energy between neighbours: RMS of the prediction's error, radians, weighted
+   as in the energy: directions at a right angle have no common sign, and count for nothing. */
 static double residual(const screen *s, const lao_v4 *phase, int v) {
     double sum = 0, n = 0, k = 2 * PI / (double)s->period;
     for (uint32_t y = 0; y < s->height; y++) {
@@ -97,8 +98,8 @@ static double residual(const screen *s, const lao_v4 *phase, int v) {
                 b = v ? (double)phase[j].y : (double)phase[j].x;
                 error =
                     turn_of(sign * b + k * 0.5 * (dot(z[i], apart) + sign * dot(z[j], apart)) - a);
-                sum += error * error;
-                n++;
+                sum += fabs(dot(z[i], z[j])) * error * error;
+                n += fabs(dot(z[i], z[j]));
             }
         }
     }
@@ -361,23 +362,27 @@ static void planes(void **state) {
     }
 }
 
-/* METHODS 7.3, oracle 6: what is left on a field with a centre, which u = k r solves but for the
-   pixels around it (0.009 rad). */
+/* METHODS 7.3, oracle 6: what is left on a field with a centre, which u = k r solves; the same
+   whatever the signs of its directions. The oracle's 0.30, 0.15, 0.054 rad before 16 sweeps are of
+   a push by the one-sided prediction k <z_i, p_i - p_j> (0.31, 0.07, 0.02 here), which errs by what
+   the field turns between levels. */
 static void sweeps(void **state) {
     static const int count[] = {0, 1, 4, 16};
-    static const double most[] = {0.03, 0.06, 0.05, 0.035};
+    static const double left[] = {0.0112, 0.0186, 0.0112, 0.0040};
     screen s;
     (void)state;
-    assert_true(screen_make(&s, 64, 64));
-    flat_frame(&s);
-    s.period = 8;
-    flat_field(&s, 2, 1);
-    for (int i = 0; i < 4; i++) {
-        s.sweeps = count[i];
-        screen_phases(&s);
-        assert_true(residual(&s, s.phase[0], 0) < most[i]);
+    for (int flips = 0; flips < 2; flips++) {
+        assert_true(screen_make(&s, 64, 64));
+        flat_frame(&s);
+        s.period = 8;
+        flat_field(&s, 2, flips);
+        for (int i = 0; i < 4; i++) {
+            s.sweeps = count[i];
+            screen_phases(&s);
+            assert_near(residual(&s, s.phase[0], 0), left[i], 0.001);
+        }
+        screen_free(&s);
     }
-    screen_free(&s);
 }
 
 static void traced_plane(const screen *s, lao_v4 *position, lao_v4 *normal, float dx) {

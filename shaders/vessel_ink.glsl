@@ -1,0 +1,69 @@
+/* Strokes and dots by (u, v), as the white they leave (L19 5; METHODS 7.5). What a new solution changes fades over. */
+LAO_TEX(0, sampler2D, position)
+LAO_TEX(1, sampler2D, normal)
+LAO_TEX(2, sampler2D, ray)
+LAO_TEX(3, samplerBuffer, box)
+LAO_TEX(4, samplerBuffer, cells)
+LAO_TEX(5, samplerBuffer, ids)
+LAO_TEX(6, samplerBuffer, cones)
+LAO_TEX(7, samplerBuffer, shapes) /* with variant 1 */
+LAO_TEX(8, samplerBuffer, fields)
+LAO_TEX(9, sampler2D, uv)
+LAO_TEX(10, sampler2D, surface)
+LAO_TEX(11, sampler2D, bgnormal)
+LAO_TEX(12, sampler2D, along)
+LAO_TEX(13, sampler2D, across)
+LAO_TEX(14, sampler2D, recalled)
+LAO_CONSTANT(0, lao_constant_near_miss)
+LAO_CONSTANT(1, lao_constant_field_occlusion)
+LAO_CONSTANT(2, lao_constant_style)
+LAO_CONSTANT(3, lao_constant_void_style)
+LAO_CONSTANT(4, lao_constant_variant) /* 1: with shapes; 2: not a tree */
+
+LAO_OUT(0, vec4, out_ink) /* white that is left; the rest in it of what was shown before (sdv_ink_rest) */
+
+#ifdef LAO_FRAGMENT
+void main() {
+    ivec2 pixel = LAO_PIXEL;
+    lao_v2 slope = lao_pixel_slope(lao_frame.ray, float(pixel.x) + 0.5, float(pixel.y) + 0.5);
+    lao_v3 direction = lao_ray_direction(lao_frame.world, slope, lao_frame.depth.w);
+    lao_v3 p = texelFetch(surface, pixel, 0).xyz;
+    lao_v3 n = texelFetch(bgnormal, pixel, 0).xyz;
+    float facing = -lao_v3_dot(n, direction);
+    bool covered = sdv_is_covered(texelFetch(position, pixel, 0).w);
+    int style = SDV_STYLE_PLAIN;
+    float tone = 1.0;
+    LAO_EXACT float shadow = 0.0;
+    if (!covered) {
+        tone = sdv_style_tone(facing, 0.5, 0.5, 1.0); /* half black where the sheet is seen edge-on */
+        if (lao_constant_void_style == SDV_VOID_STIPPLE) {
+            style = SDV_STYLE_STIPPLE;
+        } else if (lao_constant_void_style == SDV_VOID_HATCH) {
+            style = SDV_STYLE_HATCH;
+        }
+    } else if (lao_constant_style != SDV_STYLE_PLAIN) {
+        vec4 r = texelFetch(ray, pixel, 0);
+        float light = 1.0;
+        style = lao_constant_style;
+        if (lao_constant_field_occlusion != 0 && style != SDV_STYLE_SHADOW && lao_constant_variant != 2) {
+            light = sdv_light_at(cells, ids, cones, shapes, fields, sdv_box_fetch(box), p, n, r.w > 0.5,
+                                 lao_constant_variant == 1);
+        }
+        tone = sdv_style_tone(facing, lao_setting_surface_ambient, lao_setting_surface_diffuse, light);
+        if (lao_constant_near_miss != SDV_NEAR_MISS_NONE && lao_constant_variant != 2) {
+            shadow = lao_setting_shadow_strength * sdv_depth_shadow_at(texelFetch(normal, pixel, 0), r);
+        }
+    }
+    float wide_u = sdv_footprint_at(texelFetch(along, pixel, 0).xyz, n, p, direction, lao_setting_ssp_period);
+    float wide_v = sdv_footprint_at(texelFetch(across, pixel, 0).xyz, n, p, direction, lao_setting_ssp_period);
+    vec4 before = texelFetch(recalled, pixel, 0);
+    float now = sdv_style_paper(style, texelFetch(uv, pixel, 0).xy, 1.0 - tone, shadow, wide_u, wide_v);
+    float rest = 0.0;
+    if (before.w > 0.0) {
+        LAO_EXACT float shown = sdv_style_paper(style, before.xy, 1.0 - tone, shadow, wide_u, wide_v) + before.z;
+        rest = sdv_ink_rest(shown, now, lao_setting_ink_step);
+    }
+    LAO_EXACT float white = now + rest;
+    out_ink = vec4(white, rest, 0.0, 0.0);
+}
+#endif
