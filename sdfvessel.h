@@ -1631,23 +1631,28 @@ LAO_FN sdv_phases sdv_phases_hear(sdv_phases s, lao_v3 p, lao_v3 along, lao_v3 a
 
 /* ---- frame coherence (L19 3.7 with METHODS 7.4) */
 /* Coarsest level that a frame renews: the setting, or (negative) the largest with 2^level <= 1/16
-   period, at least 1. period: pixels. At rest a solution only goes on: level 0. */
-LAO_FN float sdv_recycle_level(float setting, float period, bool rests) {
-    if (rests) {
-        return 0.0f;
+   period, at least 1. period: pixels. busy 0: a solution at rest only goes on, by level 0. */
+LAO_FN float sdv_recycle_level(float setting, float period, float busy) {
+    LAO_EXACT float rule = 1.0f;
+    LAO_EXACT float next = 63.995f;
+    for (lao_int i = 0; i < 14; i++) {
+        rule = rule + (period >= next ? 1.0f : 0.0f);
+        next = next * 2.0f;
     }
-    if (setting > -0.5f) {
-        return setting;
-    }
-    LAO_EXACT float level = lao_floor(lao_log2(lao_max(period / 16.0f, 2.0f)) + 1.0e-4f);
-    return level;
+    float level = setting > -0.5f ? setting : rule;
+    return busy > 0.0f ? level : 0.0f;
 }
-LAO_FN bool sdv_same_column(lao_v4 a, lao_v4 b) {
-    return a.x == b.x && a.y == b.y && a.z == b.z && a.w == b.w;
+/* 0 where two cameras are the same. A sum, and no comparisons one by one: lavapipe makes a program
+   for each value of a uniform that a branch asks for, which would be several a frame. */
+LAO_FN float sdv_apart_column(lao_v4 a, lao_v4 b) {
+    LAO_EXACT float r =
+        lao_abs(a.x - b.x) + lao_abs(a.y - b.y) + lao_abs(a.z - b.z) + lao_abs(a.w - b.w);
+    return r;
 }
-LAO_FN bool sdv_same_matrix(lao_m4 a, lao_m4 b) {
-    return sdv_same_column(a.x, b.x) && sdv_same_column(a.y, b.y) && sdv_same_column(a.z, b.z) &&
-           sdv_same_column(a.w, b.w);
+LAO_FN float sdv_apart(lao_m4 a, lao_m4 b) {
+    LAO_EXACT float r = sdv_apart_column(a.x, b.x) + sdv_apart_column(a.y, b.y) +
+                        sdv_apart_column(a.z, b.z) + sdv_apart_column(a.w, b.w);
+    return r;
 }
 /* The pixel of an image that shows p, and 1; 0: none does. */
 LAO_FN lao_v3 sdv_pixel_of(lao_m4 view, lao_m4 projection, lao_v3 p, float width, float height) {

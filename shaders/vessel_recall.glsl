@@ -16,14 +16,11 @@ void main() {
     vec4 now = texelFetch(surface, pixel, 0);
     vec3 at = vec3(vec2(pixel), 1.0);
     out_recalled = vec4(0.0);
-    if (lao_frame.history.x < 0.5) {
-        return;
-    }
     if (now.w > 0.0) {
         at = sdv_pixel_of(lao_frame.previous_view, lao_frame.previous_projection, now.xyz, lao_step.size.x,
                           lao_step.size.y);
     }
-    if (at.z < 0.5) {
+    if (lao_min(at.z, lao_frame.history.x) < 0.5) {
         return;
     }
     vec4 before = texelFetch(surface_before, ivec2(at.xy), 0);

@@ -314,9 +314,9 @@ void screen_guide(screen *s) {
 
 /* -------------------------------------------------------------------------------------- phases */
 
-static bool rests(const screen *s) {
-    return sdv_same_matrix(s->frame.view, s->frame.previous_view) &&
-           sdv_same_matrix(s->frame.projection, s->frame.previous_projection);
+static float camera_apart(const screen *s) {
+    return sdv_apart(s->frame.view, s->frame.previous_view) +
+           sdv_apart(s->frame.projection, s->frame.previous_projection);
 }
 
 static lao_v4 recall(const screen *s, uint32_t k) {
@@ -429,7 +429,7 @@ static void sweep(screen *s, uint32_t l) {
 
 void screen_phases(screen *s) {
     float period = s->period * lao_pixel_zoom(s->frame.scale, s->frame.depth, 0.5f);
-    float first = sdv_recycle_level(s->recycle, period, s->converge > 0.5f && rests(s));
+    float first = sdv_recycle_level(s->recycle, period, camera_apart(s) + 1 - s->converge);
     for (uint32_t l = s->levels; l-- > 0;) {
         for (uint32_t k = 0; k < texels(s, l); k++)
             s->phase[l][k] = push(s, l, k, first);
@@ -439,7 +439,7 @@ void screen_phases(screen *s) {
 }
 
 void screen_parameterize(screen *s) {
-    bool stay = s->frame.history.x > 0.5f && s->converge < 0.5f && rests(s);
+    bool stay = s->frame.history.x > 0.5f && s->converge < 0.5f && camera_apart(s) == 0;
     for (uint32_t k = 0; k < texels(s, 0); k++)
         s->recalled[0][k] = recall(s, k);
     for (uint32_t l = 1; l < s->levels; l++)

@@ -473,10 +473,10 @@ static void disocclusion(void **state) {
     assert_false(sdv_same_surface(p, n, lao_v3_make(9, 0, 0), 1));
     assert_false(sdv_same_surface(p, n, lao_v3_make(NAN, 0, 0), 1));
     /* levels: the largest with 2^l <= period / 16, at least 1 */
-    assert_true(sdv_recycle_level(-1, 16, false) == 1 && sdv_recycle_level(-1, 63, false) == 1);
-    assert_true(sdv_recycle_level(-1, 64, false) == 2 && sdv_recycle_level(-1, 1, false) == 1);
-    assert_true(sdv_recycle_level(-1, 128, false) == 3 && sdv_recycle_level(3, 16, false) == 3);
-    assert_true(sdv_recycle_level(3, 16, true) == 0);
+    assert_true(sdv_recycle_level(-1, 16, 1) == 1 && sdv_recycle_level(-1, 63, 1) == 1);
+    assert_true(sdv_recycle_level(-1, 64, 1) == 2 && sdv_recycle_level(-1, 1, 1) == 1);
+    assert_true(sdv_recycle_level(-1, 128, 1) == 3 && sdv_recycle_level(3, 16, 1) == 3);
+    assert_true(sdv_recycle_level(3, 16, 0) == 0);
     /* what is recalled turns with its guide and moves with its pixel */
     phase = sdv_phase_recall(lao_v3_make(1, 0, 0), lao_v3_make(0, 1, 0),
                              lao_v3_make(-0.5f, 0.5f, 0), phase, lao_v3_make(1, 2, 0), 0.5f);
