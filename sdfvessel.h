@@ -493,6 +493,8 @@ SDV_API lao_result sdv_pull_push(const sdv_host *host, const sdv_pull_push_desc 
     X(void_style, ENUM, 0, 3, 0, 1, "", "plain|chromadepth|stipple|hatch",                         \
       "what is drawn behind vessels, where the parameterization is on (chromadepth: or "           \
       "background)")                                                                               \
+    X(void_exponent, INT, 1, 1000, 25, 1, "", "",                                                  \
+      "how little the void's depth takes over from afar (k of L19)")                               \
     X(isolines, INT, 0, 1000, 30, 0, "", "", "lines of depth of the chromadepth; 0: none")         \
     X(ink_step, FLOAT, 0.001f, 1, 0.1f, 0, "", "",                                                 \
       "how much of what a new solution changes of a place's ink shows in a frame; 1: all at once")
@@ -514,6 +516,12 @@ typedef enum sdv_setting {
         SDV_SETTING_COUNT
 } sdv_setting;
 #define SDV_SET(name) ((uint64_t)1 << SDV_SETTING_ID_##name)
+
+/* A camera for a picture that has `margin` more pixels on each side of width x height, in whose
+   middle is what `camera` shows: surfaces have their texture coordinates before they come into view
+   (L19 6). The host draws the larger picture and shows its middle. Thread: any. */
+SDV_API void sdv_camera_margin(const lao_camera *camera, uint32_t width, uint32_t height,
+                               uint32_t margin, lao_camera *wider);
 
 /* Passes, images and settings that draw trees among a scene's lines. Static. Thread: any. */
 SDV_API const lao_module *sdv_module(void);
@@ -1385,7 +1393,6 @@ LAO_FN lao_v3 sdv_shade(lao_v3 color, lao_v3 n, lao_v3 l, float ambient, float d
 
 /* ---- the surface of the screen: vessels and what fills the void behind them (L19 3.4 with METHODS
    6.1) */
-#define SDV_BACKGROUND_EXPONENT 25     /* k */
 #define SDV_BACKGROUND_INERTIA 0.01f   /* w_B: weight of the last frame's depth */
 #define SDV_BACKGROUND_PRESENCE 0.001f /* weight of the void beside vessels in coarser levels */
 /* Whether a traced pixel shows a surface: a cone's or a cut's. */
@@ -4884,6 +4891,18 @@ static const lao_module sdv__module = {
     sdv__buffers, (uint32_t)(sizeof sdv__buffers / sizeof sdv__buffers[0])
 };
 // clang-format on
+
+SDV_API void sdv_camera_margin(const lao_camera *camera, uint32_t width, uint32_t height,
+                               uint32_t margin, lao_camera *wider) {
+    double x = (double)width / ((double)width + 2.0 * margin);
+    double y = (double)height / ((double)height + 2.0 * margin);
+    int column;
+    *wider = *camera;
+    for (column = 0; column < 4; column++) {
+        wider->projection[4 * column] = (float)(x * (double)camera->projection[4 * column]);
+        wider->projection[4 * column + 1] = (float)(y * (double)camera->projection[4 * column + 1]);
+    }
+}
 
 SDV_API const lao_module *sdv_module(void) {
     return &sdv__module;

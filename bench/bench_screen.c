@@ -334,7 +334,7 @@ static bool measure_fill(uint32_t size, cJSON *list) {
         desc.values = pushed;
         desc.weights = weights;
         desc.push = SDV_PUSH_SPLINE;
-        desc.exponent = SDV_BACKGROUND_EXPONENT;
+        desc.exponent = 25;
         covered = draw_ring(size, near, weights);
         double start = now();
         fill_by_distance(size, near, weights, contour);

@@ -65,9 +65,11 @@ static const flag_row flags[] = {
     {"--intersect", NULL, "SHAPE", FLAG_SHAPE, CLI_VESSEL, ALL(vessel.shapes), "1", "keep what is inside; the shapes are applied in the order of the flags"},
     {"--union", NULL, "SHAPE", FLAG_SHAPE, CLI_VESSEL, ALL(vessel.shapes), "0", "add the shape"},
     {"--surface", NULL, "NAME", FLAG_TEXT, CLI_VESSEL, ALL(vessel.surface), NULL, "without a FILE: an embedded surface instead of a tree: liver, aneurysm, aorta or bone"},
+    {"--last", NULL, NULL, FLAG_SWITCH, CLI_VESSEL, ALL(vessel.last), NULL, "of several cameras or frames write only the last picture, to FILE.png as it is"},
+    {"--margin", NULL, "N", FLAG_COUNT, CLI_VESSEL, ALL(vessel.margin), NULL, "pixels drawn around the picture and not shown, so that what comes into view has its texture coordinates (0); a dump has them"},
     {"--nodes", NULL, "N", FLAG_COUNT, CLI_VESSEL, ALL(vessel.nodes), NULL, "of the embedded tree, when no TREE is given (3000)"},
     {"--cameras", NULL, "FILE.json", FLAG_TEXT, CLI_VESSEL, ALL(vessel.cameras), NULL, "an array of cameras: one picture for each"},
-    {"--frames", NULL, "N", FLAG_COUNT, CLI_VESSEL, ALL(frames), NULL, "pictures of one turn around the tree"},
+    {"--frames", NULL, "N", FLAG_COUNT, CLI_VESSEL, ALL(frames), NULL, "pictures of one turn around the tree; of --cameras, the first N"},
     {"--lines", NULL, "FILE", FLAG_TEXT, CLI_SURFACE, ALL(surface.lines), NULL, "pathlines with the point array 'time' (ms): drawn inside, and what the surface lights up for"},
     {"--baseline", NULL, "NAME", FLAG_CHOICE, CLI_SURFACE, ALL(surface.baseline), "transparent|fresnel", "for comparison, the setting shading: transparent or fresnel"},
     {"--brightness", NULL, "MM|auto", FLAG_AUTO, CLI_SURFACE, ALL(surface.brightness), NULL, "how much the wall shows of its shape; auto: by its median curvature (1.5; embedded surfaces: auto)"},
@@ -573,12 +575,11 @@ static bool check_vessel(const cli_options *o) {
     const cli_source *source = o->file_count ? &o->files[0] : &o->all;
     if (source->color && strcmp(source->color, "distance") == 0 && !v->path && !v->target)
         return cli_fail("--color: distance needs a --path or a --target");
-    if (v->cameras && (o->camera || o->frames || o->view || o->ortho))
+    if (v->cameras && (o->camera || o->view || o->ortho))
         return cli_fail("--cameras: says where every picture is taken from; leave %s out",
-                        o->camera   ? "--camera"
-                        : o->frames ? "--frames"
-                        : o->view   ? "--view"
-                                    : "--ortho");
+                        o->camera ? "--camera"
+                        : o->view ? "--view"
+                                  : "--ortho");
     return true;
 }
 

@@ -83,6 +83,8 @@ typedef struct cli_vessel_options {
     const char *style, *tree, *path, *target, *cameras, *weight, *surface;
     const char *layout[2]; /* NAME.svg, NAME.json */
     uint32_t grid, nodes;  /* cells; nodes of the embedded tree; 0: not given */
+    uint32_t margin;       /* pixels */
+    bool last;
     cli_shape_option shapes[CLI_SHAPES];
     uint32_t shape_count;
 } cli_vessel_options;

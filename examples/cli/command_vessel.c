@@ -145,8 +145,11 @@ static bool read_views(const cli_options *options, view_list *out) {
     if (!options->vessel.cameras)
         return true;
     out->numbered = true;
-    return camera_read_all(options->vessel.cameras, &out->poses, &out->count, error) ||
-           cli_fail("%s", error);
+    if (!camera_read_all(options->vessel.cameras, &out->poses, &out->count, error))
+        return cli_fail("%s", error);
+    if (options->frames && options->frames < out->count)
+        out->count = options->frames;
+    return true;
 }
 
 /* The camera turned around its up vector through the point that it looks at, by a part of a turn.
@@ -182,10 +185,12 @@ static bool draw_views(cli_tree *tree, cli_session *session, cli_shot *shot, con
         else if (i > 0)
             turn(&first, (double)i / views->count, &shot->camera);
         cli_shot_aim(&tree->scene, shot);
+        bool shown = !options->vessel.last || i + 1 == views->count;
         if (views->count > 1)
             cli_progress_show(&progress, i, views->count);
         ok = cli_session_render(session, shot, flags) &&
-             write_frame(tree, session, shot, video, views->numbered ? (int64_t)i : -1);
+             (!shown || write_frame(tree, session, shot, video,
+                                    views->numbered && !options->vessel.last ? (int64_t)i : -1));
     }
     cli_progress_end(&progress);
     return ok;
@@ -242,15 +247,9 @@ static bool render(cli_tree *tree) {
 static void add_warnings(const cli_tree *tree, cJSON *list) {
     const io_tree *read = &tree->contents.tree;
     const sdv_tree *t = &tree->vessel.tree;
-    const io_mesh *surface = &tree->contents.mesh;
-    uint32_t of_surface = surface->warning_count + tree->mesh.warning_count;
-    for (uint32_t i = 0; i < read->warning_count + t->warning_count + of_surface; i++) {
+    for (uint32_t i = 0; i < read->warning_count + t->warning_count; i++) {
         char text[256];
-        if (tree->mesh.vertex_count && i < surface->warning_count)
-            snprintf(text, sizeof text, "%s", surface->warnings[i]);
-        else if (tree->mesh.vertex_count)
-            vsf_mesh_warning_text(&tree->mesh, i - surface->warning_count, text, sizeof text);
-        else if (i < read->warning_count)
+        if (i < read->warning_count)
             snprintf(text, sizeof text, "%s", read->warnings[i]);
         else
             sdv_tree_warning_text(t, i - read->warning_count, text, sizeof text);

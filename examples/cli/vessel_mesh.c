@@ -1,4 +1,5 @@
 /* Surfaces drawn by the passes of vessels: ink by texture coordinates of the screen. */
+#include "report.h"
 #include "vessel.h"
 
 #include "scene_surface.h"
@@ -18,8 +19,14 @@ static bool build(cli_tree *tree, uint32_t vertex_count, const float *positions,
     desc.positions = positions;
     desc.triangle_count = triangle_count;
     desc.triangles = triangles;
-    return vsf_mesh_build(&host, &desc, &tree->mesh) == LAO_OK ||
-           cli_fail("%s: no surface can be made of its triangles", tree->name);
+    if (vsf_mesh_build(&host, &desc, &tree->mesh) != LAO_OK)
+        return cli_fail("%s: no surface can be made of its triangles", tree->name);
+    for (uint32_t i = 0; i < tree->mesh.warning_count; i++) {
+        char text[256];
+        vsf_mesh_warning_text(&tree->mesh, i, text, sizeof text);
+        cli_warn(tree->name, text);
+    }
+    return true;
 }
 
 static bool embedded(cli_tree *tree) {

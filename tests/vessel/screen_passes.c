@@ -160,7 +160,8 @@ static void fill(screen *s) {
         for (uint32_t k = 0; k < texels(s, l); k++) {
             texel at = texel_make(s, l, k);
             sdv_mix m = sdv_mix_start(zero());
-            float kept = sdv_push_own(s->depth[l][k].w, SDV_BACKGROUND_EXPONENT);
+            float kept =
+                sdv_push_own(s->depth[l][k].w, (lao_int)s->values[SDV_SETTING_ID_void_exponent]);
             for (int i = 0; i < 4; i++) {
                 long p = parent(&at, i);
                 if (p >= 0)

@@ -20,7 +20,7 @@ typedef struct screen {
         swept; /* scratch of the sweeps */
     lao_v4 *surface, *bgnormal, *uv, *ink;
     lao_v4 *surface_before, *uv_before, *ink_before; /* of the last frame */
-    float values[SDV_SETTING_COUNT];                 /* of the ink */
+    float values[SDV_SETTING_COUNT];                 /* of the void and the ink */
 } screen;
 
 /* Takes its memory and the settings' defaults; false: no memory. */

@@ -1,5 +1,6 @@
 /* Turning by a degree a frame, the parameterization goes with the surface, strokes and dots that it
-   makes or gives up fade by a tenth a frame, and their tone stays what it was asked to be. */
+   makes or gives up fade by a tenth a frame, and their tone stays what it was asked to be; a margin
+   around the picture knows what comes into view. */
 #include "screen_passes.h"
 #include "vessel_host.h"
 
@@ -240,11 +241,77 @@ static void births(void **state) {
     }
 }
 
+/* L19 6: what comes into view has no phases to recall, unless it was in the margin before. */
+static void margins(void **state) {
+    enum { MARGIN = 16, STEP = 3 };
+    static body b;
+    uint32_t entered = 0, shown = 0, unknown = 0;
+    screen s;
+    (void)state;
+    body_make(&b);
+    assert_true(screen_make(&s, SIDE, SIDE));
+    s.period = 10;
+    for (int i = 0; i < 8; i++) {
+        camera_turn(&s, 0);
+        s.frame.world.w.x = (float)(STEP * i - 70); /* the camera goes by */
+        s.frame.view.w.x = -s.frame.world.w.x;
+        if (i == 0) {
+            s.frame.previous_view = s.frame.view;
+            s.frame.previous_projection = s.frame.projection;
+        }
+        body_trace(&b, &s);
+        screen_background(&s, b.position, b.normal);
+        screen_guide(&s);
+        screen_parameterize(&s);
+        for (uint32_t k = 0; i > 0 && k < SIDE * SIDE; k++) {
+            uint32_t x = k % SIDE;
+            if (s.surface[k].w < 0)
+                continue;
+            /* the shown part ends MARGIN pixels before the picture does */
+            entered += x >= SIDE - STEP && s.recalled[0][k].w > 0;
+            shown += x >= SIDE - MARGIN - STEP && x < SIDE - MARGIN;
+            unknown += x >= SIDE - MARGIN - STEP && x < SIDE - MARGIN && s.recalled[0][k].w <= 0;
+        }
+        screen_next(&s);
+    }
+    assert_int_equal(entered, 0); /* the picture's own border: nothing is recalled */
+    assert_true(shown > 200);     /* the shown border: all is */
+    assert_int_equal(unknown, 0);
+    screen_free(&s);
+}
+
+/* A wider camera shows the same in its middle. */
+static void wider_camera(void **state) {
+    lao_camera camera, wider;
+    (void)state;
+    memset(&camera, 0, sizeof camera);
+    camera.projection[0] = 2;
+    camera.projection[5] = -3;
+    camera.projection[8] = 0.25f;
+    camera.projection[9] = -0.5f;
+    camera.projection[10] = camera.projection[11] = -1;
+    sdv_camera_margin(&camera, 200, 100, 30, &wider);
+    for (int i = 0; i < 9; i++) { /* places of the picture, in pixels from its middle */
+        double x = (i % 3 - 1) * 0.3, y = (i / 3 - 1) * 0.2, z = -1.5;
+        for (int axis = 0; axis < 2; axis++) {
+            double at = axis ? y : x, size = axis ? 100 : 200;
+            double a = ((double)camera.projection[5 * axis] * at +
+                        (double)camera.projection[8 + axis] * z) /
+                       -z * 0.5 * size;
+            double w =
+                ((double)wider.projection[5 * axis] * at + (double)wider.projection[8 + axis] * z) /
+                -z * 0.5 * (size + 60);
+            assert_true(fabs(a - w) < 1e-4);
+        }
+    }
+    sdv_camera_margin(&camera, 200, 100, 0, &wider);
+    assert_memory_equal(&camera, &wider, sizeof camera);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(turning),
-        cmocka_unit_test(tones),
-        cmocka_unit_test(births),
+        cmocka_unit_test(turning), cmocka_unit_test(tones),        cmocka_unit_test(births),
+        cmocka_unit_test(margins), cmocka_unit_test(wider_camera),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

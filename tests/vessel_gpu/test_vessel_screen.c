@@ -175,6 +175,7 @@ static void still_frames(void **state) {
             render_orthographic(&s.shot.camera, 30, (double)WIDTH / HEIGHT, 1, 200);
             render_reverse(&s.shot.camera);
             s.vessel.ssp_sweeps = 3;
+            s.vessel.void_exponent = 2;
             s.vessel.style = SDV_STYLE_LAYERED;
             s.vessel.void_style = SDV_VOID_CHROMADEPTH;
         }
