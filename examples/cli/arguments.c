@@ -727,7 +727,7 @@ void cli_print_flags(cli_command_bit command) {
                command == CLI_SURFACE
                    ? "Of the MESH and of the lines"
                    : "Of a FILE: before the first FILE for all FILEs, after a FILE for it alone");
-    if (command & (DRAWN | CLI_RENDER))
+    if (command & DRAWN)
         printf("\nSettings%s (default in parentheses)\n",
                command & (CLI_VESSEL | CLI_SURFACE) ? "" : ", for all FILEs or for one");
     for (int m = 0; m < MODULES; m++) { /* of those for lines few do anything to vessels */
