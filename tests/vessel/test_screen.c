@@ -540,12 +540,64 @@ static void footprints(void **state) {
     assert_true(sdv_style_footprint(down, x, x, y, down, 1, 1) <= 20.001f); /* edge-on: finite */
 }
 
+/* A mesh becomes an object, or is refused and leaves nothing behind. */
+static void meshes(void **state) {
+    static const float corners[] = {0, 0, 0, 4, 0, 0, 0, 2, 0, 0, 0, 1};
+    static const float upward[] = {0, 0, 1, 0, 0, 1, 0, 0, 1, 0, 0, 1};
+    uint32_t faces[] = {0, 1, 2, 0, 1, 3};
+    float broken[12];
+    vessel_host counted;
+    sdv_host host = vessel_host_make(&counted);
+    sdv_mesh_desc desc;
+    sdv_object object, none;
+    (void)state;
+    memset(&desc, 0, sizeof desc);
+    memset(&none, 0, sizeof none);
+    sdv_object_free(&none);
+    desc.vertex_count = 4;
+    desc.triangle_count = 2;
+    desc.positions = corners;
+    desc.normals = upward;
+    desc.triangles = faces;
+    desc.directions = corners;
+    assert_int_equal(sdv_object_mesh(&host, &desc, &object), LAO_OK);
+    assert_int_equal(object.desc.triangle_count, 2);
+    assert_true(object.desc.bounds[1][0] == 4 && object.desc.bounds[1][2] == 1);
+    sdv_object_free(&object);
+    assert_int_equal(counted.bytes, 0);
+    memset(&object, 7, sizeof object);
+    memcpy(&none, &object, sizeof none);
+    faces[5] = 4;
+    assert_int_equal(sdv_object_mesh(&host, &desc, &object), LAO_ERROR_INVALID_ARGUMENT);
+    assert_int_equal(counted.item, SDV_LOG_MESH);
+    faces[5] = 3;
+    memcpy(broken, corners, sizeof broken);
+    broken[7] = NAN;
+    desc.positions = broken;
+    assert_int_equal(sdv_object_mesh(&host, &desc, &object), LAO_ERROR_INVALID_ARGUMENT);
+    desc.positions = corners;
+    desc.triangle_count = 0;
+    assert_int_equal(sdv_object_mesh(&host, &desc, &object), LAO_ERROR_INVALID_ARGUMENT);
+    desc.triangle_count = 2;
+    desc.normals = NULL;
+    assert_int_equal(sdv_object_mesh(&host, &desc, &object), LAO_ERROR_INVALID_ARGUMENT);
+    assert_int_equal(sdv_object_drawn(&host, NULL, &object), LAO_ERROR_INVALID_ARGUMENT);
+    assert_int_equal(counted.item, SDV_LOG_NULL_ARGUMENT);
+    desc.normals = upward;
+    counted.fail_at = counted.takes + 1;
+    assert_int_equal(sdv_object_mesh(&host, &desc, &object), LAO_ERROR_OUT_OF_MEMORY);
+    assert_int_equal(counted.failures, 6);
+    assert_int_equal(counted.bytes, 0);
+    assert_memory_equal(&object, &none, sizeof object);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(sheets),       cmocka_unit_test(nothing), cmocka_unit_test(inertia),
         cmocka_unit_test(contours),     cmocka_unit_test(ball),    cmocka_unit_test(signs),
         cmocka_unit_test(planes),       cmocka_unit_test(sweeps),  cmocka_unit_test(coherence),
         cmocka_unit_test(disocclusion), cmocka_unit_test(ink),     cmocka_unit_test(footprints),
+        cmocka_unit_test(meshes),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
