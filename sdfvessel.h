@@ -488,7 +488,7 @@ SDV_API lao_result sdv_pull_push(const sdv_host *host, const sdv_pull_push_desc 
     X(ssp_recycle, INT, -1, 15, -1, 0, "", "",                                                     \
       "coarsest level that a frame renews (l_p of L19); -1: 2^level <= period / 16 pixels")        \
     X(ssp_converge, BOOL, 0, 1, 0, 0, "", "", "optimise on where nothing changes")                 \
-    X(style, ENUM, 0, 5, 0, 1, "", "plain|stipple|hatch|crosshatch|layered|shadow",                \
+    X(style, ENUM, 0, 6, 0, 1, "", "plain|stipple|hatch|crosshatch|layered|shadow|pattern",        \
       "ink instead of shades (shadow: of depth shadows), where the parameterization is on")        \
     X(void_style, ENUM, 0, 3, 0, 1, "", "plain|chromadepth|stipple|hatch",                         \
       "what is drawn behind vessels, where the parameterization is on (chromadepth: or "           \
@@ -530,10 +530,11 @@ SDV_API const lao_module *sdv_module(void);
    must not move, and both must live until lao_object_create or _update returns. */
 typedef struct sdv_object {
     lao_object_desc desc;
-    lao_object_buffer buffers[7];
+    lao_object_buffer buffers[8];
     lao_v4 box[2];
     lao_v4 shapes[1 + 4 * SDV_MOST_SHAPES];
-    void *memory; /* private, as what follows */
+    float *pattern; /* private, as what follows */
+    void *memory;
     size_t size;
     lao_allocator allocator;
 } sdv_object;
@@ -571,6 +572,13 @@ SDV_API lao_result sdv_object_mesh(const sdv_host *host, const sdv_mesh_desc *de
    the viewer) and "vessel_color" (RGBA8); with guide=own "vessel_direction" (RGBA32F; world; w: how
    sure, 0 .. 1) too. bounds: lower and upper corner (6 floats), mm. Fails with NULL_ARGUMENT. */
 SDV_API lao_result sdv_object_drawn(const sdv_host *host, const float *bounds, sdv_object *object);
+/* Gives it a texture of ink for the style `pattern`: a picture of size x size grey values (1 ..
+   SDV_MOST_PATTERN; smaller: inked first), which lies in half a period of (u, v) and is mirrored
+   into the rest. Values are made even, so that any picture shows the right tone. Once for an
+   object, after everything else. Fails with NULL_ARGUMENT, IMAGE_SIZE, MEMORY. */
+#define SDV_MOST_PATTERN 256u
+SDV_API lao_result sdv_object_pattern(const sdv_host *host, const float *values, uint32_t size,
+                                      sdv_object *object);
 /* Fine on an all-zero one. */
 SDV_API void sdv_object_free(sdv_object *object);
 
@@ -1727,6 +1735,7 @@ LAO_FN bool sdv_phase_stays(lao_v4 now, lao_v4 before) {
 #define SDV_STYLE_CROSSHATCH 3
 #define SDV_STYLE_LAYERED 4
 #define SDV_STYLE_SHADOW 5 /* shaded, depth shadows hatched */
+#define SDV_STYLE_PATTERN 6
 #define SDV_VOID_PLAIN 0
 #define SDV_VOID_CHROMADEPTH 1
 #define SDV_VOID_STIPPLE 2
@@ -1805,16 +1814,42 @@ LAO_FN float sdv_style_ink(lao_int style, float u, float v, float darkness, floa
     }
     return sdv_lines_ink(b, dark, wide_v);
 }
-/* White that a style's ink and a depth shadow's lines, which go the other way, leave of a pixel. */
+/* Sample i of SDV_PATTERN_SAMPLES^2 over a pixel at (a, b), periods: which of n x n thresholds
+   holds there. The pattern lies in half a period and is mirrored, as (u, v) and (-u, -v) are one
+   place. */
+#define SDV_PATTERN_SAMPLES 4
+LAO_FN lao_int sdv_pattern_axis(float a, float wide, lao_int i, lao_int n) {
+    LAO_EXACT float x = a + wide * ((LAO_F(i) + 0.5f) / LAO_F(SDV_PATTERN_SAMPLES) - 0.5f);
+    LAO_EXACT float off = lao_abs(x - lao_floor(x + 0.5f)) * 2.0f * LAO_F(n);
+    return LAO_I(lao_min(off, LAO_F(n) - 0.5f));
+}
+LAO_FN lao_int sdv_pattern_at(lao_v2 phase, float wide_u, float wide_v, lao_int i, lao_int n) {
+    LAO_EXACT float a = phase.x / LAO_TURN;
+    LAO_EXACT float b = phase.y / LAO_TURN;
+    return sdv_pattern_axis(b, wide_v, i / SDV_PATTERN_SAMPLES, n) * n +
+           sdv_pattern_axis(a, wide_u, i % SDV_PATTERN_SAMPLES, n);
+}
+/* inked: of the samples; what is too small for a pixel keeps its tone. */
+LAO_FN float sdv_pattern_ink(float inked, float dark, float wide_u, float wide_v) {
+    LAO_EXACT float share = inked / LAO_F(SDV_PATTERN_SAMPLES * SDV_PATTERN_SAMPLES);
+    LAO_EXACT float blur = lao_clamp01(2.5f * (wide_u + wide_v) - 0.75f);
+    LAO_EXACT float r = share + blur * (dark - share);
+    return r;
+}
+/* White that a style's ink and a depth shadow's lines, which go the other way, leave of a pixel.
+   pattern: ink of SDV_STYLE_PATTERN. */
 LAO_FN float sdv_style_paper(lao_int style, lao_v2 phase, float darkness, float shadow,
-                             float wide_u, float wide_v) {
+                             float wide_u, float wide_v, float pattern) {
     LAO_EXACT float lines = sdv_lines_ink(phase.x / LAO_TURN, lao_clamp01(shadow), wide_u);
     LAO_EXACT float left = 1.0f - lines;
     if (style == SDV_STYLE_PLAIN || style == SDV_STYLE_SHADOW) {
         return left;
     }
-    LAO_EXACT float r =
-        left * (1.0f - sdv_style_ink(style, phase.x, phase.y, darkness, wide_u, wide_v));
+    float ink = pattern;
+    if (style != SDV_STYLE_PATTERN) {
+        ink = sdv_style_ink(style, phase.x, phase.y, darkness, wide_u, wide_v);
+    }
+    LAO_EXACT float r = left * (1.0f - ink);
     return r;
 }
 /* Births and deaths of strokes and dots (which L19 5 leaves open). A place shows what its phases
@@ -4748,7 +4783,8 @@ static const lao_buffer_row sdv__buffers[] = {
     {"vessel_box", LAO_FORMAT_RGBA32F}, {"vessel_cells", LAO_FORMAT_RGBA32F}, {"vessel_ids", LAO_FORMAT_R32F},
     {"vessel_cones", LAO_FORMAT_RGBA32F}, {"vessel_colors", LAO_FORMAT_RGBA8},
     {"vessel_shapes", LAO_FORMAT_RGBA32F}, {"vessel_fields", LAO_FORMAT_R32F},
-    {"vessel_vertices", LAO_FORMAT_RGBA32F}, {"vessel_triangles", LAO_FORMAT_RGBA32F}
+    {"vessel_vertices", LAO_FORMAT_RGBA32F}, {"vessel_triangles", LAO_FORMAT_RGBA32F},
+    {"vessel_pattern", LAO_FORMAT_R32F}
 };
 
 static const lao_image_row sdv__images[] = {
@@ -4842,19 +4878,19 @@ static const lao_pass_row sdv__passes[] = {
      {SDV__READ("vessel_position"), SDV__READ("vessel_normal"), SDV__READ("vessel_ray"),
       SDV__READ("#vessel_box"), SDV__READ("#vessel_cells"), SDV__READ("#vessel_ids"), SDV__READ("#vessel_cones"),
       SDV__READ("#vessel_shapes"), SDV__READ("#vessel_fields"), SDV__READ("vessel_uv"), SDV__READ("vessel_surface"),
-      SDV__READ("vessel_bgnormal"), SDV__READ("vessel_along"), SDV__READ("vessel_across"), SDV__READ("vessel_recalled")}},
+      SDV__READ("vessel_bgnormal"), SDV__READ("vessel_along"), SDV__READ("vessel_across"), SDV__READ("vessel_recalled"), SDV__READ("#vessel_pattern")}},
     {"vessel_ink_cut", LAO_PASS_FULLSCREEN, "vessel_ink", 1, LAO_STAGE_SHADE, LAO_SCOPE_PER_SET, LAO_REPEAT_NONE, NULL, LAO_BLEND_NONE, LAO_DEPTH_NONE, LAO_CULL_NONE, {SDV__SHAPES, SDV__PARAMETERIZED},
      {SDV__WRITE("vessel_ink")},
      {SDV__READ("vessel_position"), SDV__READ("vessel_normal"), SDV__READ("vessel_ray"),
       SDV__READ("#vessel_box"), SDV__READ("#vessel_cells"), SDV__READ("#vessel_ids"), SDV__READ("#vessel_cones"),
       SDV__READ("#vessel_shapes"), SDV__READ("#vessel_fields"), SDV__READ("vessel_uv"), SDV__READ("vessel_surface"),
-      SDV__READ("vessel_bgnormal"), SDV__READ("vessel_along"), SDV__READ("vessel_across"), SDV__READ("vessel_recalled")}},
+      SDV__READ("vessel_bgnormal"), SDV__READ("vessel_along"), SDV__READ("vessel_across"), SDV__READ("vessel_recalled"), SDV__READ("#vessel_pattern")}},
     {"vessel_ink_seen", LAO_PASS_FULLSCREEN, "vessel_ink", 2, LAO_STAGE_SHADE, LAO_SCOPE_PER_SET, LAO_REPEAT_NONE, NULL, LAO_BLEND_NONE, LAO_DEPTH_NONE, LAO_CULL_NONE, {SDV__SEEN, SDV__PARAMETERIZED},
      {SDV__WRITE("vessel_ink")},
      {SDV__READ("vessel_position"), SDV__READ("vessel_normal"), SDV__READ("vessel_normal"),
       SDV__READ("#vessel_box"), SDV__READ("#vessel_cells"), SDV__READ("#vessel_ids"), SDV__READ("#vessel_cones"),
       SDV__READ("#vessel_shapes"), SDV__READ("#vessel_fields"), SDV__READ("vessel_uv"), SDV__READ("vessel_surface"),
-      SDV__READ("vessel_bgnormal"), SDV__READ("vessel_along"), SDV__READ("vessel_across"), SDV__READ("vessel_recalled")}},
+      SDV__READ("vessel_bgnormal"), SDV__READ("vessel_along"), SDV__READ("vessel_across"), SDV__READ("vessel_recalled"), SDV__READ("#vessel_pattern")}},
     {"vessel_shade", LAO_PASS_FULLSCREEN, "vessel_shade", 0, LAO_STAGE_SHADE, LAO_SCOPE_PER_SET, LAO_REPEAT_NONE, NULL, LAO_BLEND_NONE, LAO_DEPTH_NEARER, LAO_CULL_NONE, SDV__WITH_TREE,
      {SDV__KEEP("shaded"), SDV__KEEP("zbuffer")},
      {SDV__READ("vessel_position"), SDV__READ("vessel_normal"), SDV__READ("vessel_ray"), SDV__READ("#vessel_colors"),
@@ -5104,7 +5140,57 @@ SDV_API lao_result sdv_object_mesh(const sdv_host *host, const sdv_mesh_desc *de
     return LAO_OK;
 }
 
+typedef struct sdv__grey {
+    float value;
+    uint32_t place;
+} sdv__grey;
+static int sdv__by_grey(const void *a, const void *b) {
+    const sdv__grey *x = (const sdv__grey *)a, *y = (const sdv__grey *)b;
+    if (x->value != y->value) {
+        return x->value < y->value ? -1 : 1;
+    }
+    return x->place < y->place ? -1 : x->place > y->place;
+}
+
+SDV_API lao_result sdv_object_pattern(const sdv_host *host, const float *values, uint32_t size,
+                                      sdv_object *object) {
+    lao_allocator a = sdv__allocator(host);
+    uint32_t i, count = size * size;
+    sdv__grey *greys;
+    float *pattern;
+    if (!values || !object || object->pattern || !object->desc.buffers) {
+        return sdv__fail(host, SDV_LOG_NULL_ARGUMENT, "sdv_object_pattern");
+    }
+    if (size < 1 || size > SDV_MOST_PATTERN) {
+        return sdv__fail(host, SDV_LOG_IMAGE_SIZE, "a pattern of %u x %u", size, size);
+    }
+    greys = (sdv__grey *)sdv__take(&a, count, sizeof *greys);
+    pattern = (float *)sdv__take(&a, count + 1, sizeof *pattern);
+    if (!greys || !pattern) {
+        sdv__give(&a, greys);
+        sdv__give(&a, pattern);
+        return sdv__fail(host, SDV_LOG_MEMORY, "a pattern of %u x %u", size, size);
+    }
+    for (i = 0; i < count; i++) {
+        greys[i].value = values[i] == values[i] ? values[i] : 0.0f;
+        greys[i].place = i;
+    }
+    qsort(greys, count, sizeof *greys, sdv__by_grey);
+    pattern[0] = (float)size;
+    for (i = 0; i < count; i++) {
+        pattern[1 + greys[i].place] = ((float)i + 0.5f) / (float)count;
+    }
+    sdv__give(&a, greys);
+    object->pattern = pattern;
+    sdv__object_buffer_of(object, object->desc.buffer_count++, 9, pattern, count + 1);
+    return LAO_OK;
+}
+
 SDV_API void sdv_object_free(sdv_object *object) {
+    if (object && object->pattern) {
+        sdv__give(&object->allocator, object->pattern);
+        object->pattern = NULL;
+    }
     if (object && object->memory) {
         object->allocator.release(object->allocator.user, object->memory, object->size);
         object->memory = NULL;

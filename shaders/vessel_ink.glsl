@@ -14,6 +14,7 @@ LAO_TEX(11, sampler2D, bgnormal)
 LAO_TEX(12, sampler2D, along)
 LAO_TEX(13, sampler2D, across)
 LAO_TEX(14, sampler2D, recalled)
+LAO_TEX(15, samplerBuffer, pattern) /* its size; thresholds */
 LAO_CONSTANT(0, lao_constant_near_miss)
 LAO_CONSTANT(1, lao_constant_field_occlusion)
 LAO_CONSTANT(2, lao_constant_style)
@@ -23,6 +24,21 @@ LAO_CONSTANT(4, lao_constant_variant) /* 1: with shapes; 2: not a tree */
 LAO_OUT(0, vec4, out_ink) /* white that is left; the rest in it of what was shown before (sdv_ink_rest) */
 
 #ifdef LAO_FRAGMENT
+/* White that is left by ink at these phases. */
+float paper(int style, lao_v2 phase, float dark, float shadow, float wide_u, float wide_v) {
+    float pattern_ink = 0.0;
+    if (style == SDV_STYLE_PATTERN) {
+        int n = int(texelFetch(pattern, 0).x);
+        float inked = 0.0;
+        for (int i = 0; i < SDV_PATTERN_SAMPLES * SDV_PATTERN_SAMPLES; i++) {
+            float threshold = texelFetch(pattern, 1 + sdv_pattern_at(phase, wide_u, wide_v, i, n)).x;
+            inked += dark > threshold ? 1.0 : 0.0;
+        }
+        pattern_ink = n > 0 ? sdv_pattern_ink(inked, dark, wide_u, wide_v) : 0.0;
+    }
+    return sdv_style_paper(style, phase, dark, shadow, wide_u, wide_v, pattern_ink);
+}
+
 void main() {
     ivec2 pixel = LAO_PIXEL;
     lao_v2 slope = lao_pixel_slope(lao_frame.ray, float(pixel.x) + 0.5, float(pixel.y) + 0.5);
@@ -57,10 +73,10 @@ void main() {
     float wide_u = sdv_footprint_at(texelFetch(along, pixel, 0).xyz, n, p, direction, lao_setting_ssp_period);
     float wide_v = sdv_footprint_at(texelFetch(across, pixel, 0).xyz, n, p, direction, lao_setting_ssp_period);
     vec4 before = texelFetch(recalled, pixel, 0);
-    float now = sdv_style_paper(style, texelFetch(uv, pixel, 0).xy, 1.0 - tone, shadow, wide_u, wide_v);
+    float now = paper(style, texelFetch(uv, pixel, 0).xy, 1.0 - tone, shadow, wide_u, wide_v);
     float rest = 0.0;
     if (before.w > 0.0) {
-        LAO_EXACT float shown = sdv_style_paper(style, before.xy, 1.0 - tone, shadow, wide_u, wide_v) + before.z;
+        LAO_EXACT float shown = paper(style, before.xy, 1.0 - tone, shadow, wide_u, wide_v) + before.z;
         rest = sdv_ink_rest(shown, now, lao_setting_ink_step);
     }
     LAO_EXACT float white = now + rest;

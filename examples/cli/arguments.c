@@ -65,6 +65,7 @@ static const flag_row flags[] = {
     {"--intersect", NULL, "SHAPE", FLAG_SHAPE, CLI_VESSEL, ALL(vessel.shapes), "1", "keep what is inside; the shapes are applied in the order of the flags"},
     {"--union", NULL, "SHAPE", FLAG_SHAPE, CLI_VESSEL, ALL(vessel.shapes), "0", "add the shape"},
     {"--surface", NULL, "NAME", FLAG_TEXT, CLI_VESSEL, ALL(vessel.surface), NULL, "without a FILE: an embedded surface instead of a tree: liver, aneurysm, aorta or bone"},
+    {"--pattern", NULL, "FILE.png", FLAG_TEXT, CLI_VESSEL, ALL(vessel.pattern), NULL, "for --set style=pattern: the picture, dark parts first, that ink makes of (u, v); its middle square, up to 256 pixels"},
     {"--last", NULL, NULL, FLAG_SWITCH, CLI_VESSEL, ALL(vessel.last), NULL, "of several cameras or frames write only the last picture, to FILE.png as it is"},
     {"--margin", NULL, "N", FLAG_COUNT, CLI_VESSEL, ALL(vessel.margin), NULL, "pixels drawn around the picture and not shown, so that what comes into view has its texture coordinates (0); a dump has them"},
     {"--nodes", NULL, "N", FLAG_COUNT, CLI_VESSEL, ALL(vessel.nodes), NULL, "of the embedded tree, when no TREE is given (3000)"},

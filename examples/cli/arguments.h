@@ -80,7 +80,7 @@ typedef struct cli_shape_option {
     const char *text;
 } cli_shape_option;
 typedef struct cli_vessel_options {
-    const char *style, *tree, *path, *target, *cameras, *weight, *surface;
+    const char *style, *tree, *path, *target, *cameras, *weight, *surface, *pattern;
     const char *layout[2]; /* NAME.svg, NAME.json */
     uint32_t grid, nodes;  /* cells; nodes of the embedded tree; 0: not given */
     uint32_t margin;       /* pixels */

@@ -247,7 +247,8 @@ bool cli_tree_prepare(cli_tree *tree) {
     memset(&desc, 0, sizeof desc);
     desc.resolution = tree->options->vessel.grid;
     if (is_surface(tree))
-        return cli_go_on() && cli_tree_mesh_object(tree) && make_scene(tree);
+        return cli_go_on() && cli_tree_mesh_object(tree) && make_scene(tree) &&
+               cli_tree_pattern(tree);
     tree->progress = (cli_progress){"measuring the field of", tree->name, -1};
     double begin = now();
     bool ok = sdv_grid_build(&tree->host, &tree->vessel.tree, &desc, &tree->grid) == LAO_OK;
@@ -257,7 +258,7 @@ bool cli_tree_prepare(cli_tree *tree) {
          sdv_object_make(&tree->host, &tree->grid, tree->colors, &tree->object) == LAO_OK;
     if (ok && tree->carving.shapes.count)
         ok = sdv_object_shapes(&tree->host, &tree->carving.shapes, NULL, &tree->object) == LAO_OK;
-    return ok && make_scene(tree);
+    return ok && make_scene(tree) && cli_tree_pattern(tree);
 }
 
 void cli_tree_free(cli_tree *tree) {

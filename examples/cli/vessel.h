@@ -47,6 +47,8 @@ void cli_tree_free(cli_tree *tree);
 bool cli_tree_mesh(cli_tree *tree);
 /* Its object. False: reported. */
 bool cli_tree_mesh_object(cli_tree *tree);
+/* Reads --pattern into the object. False: reported. */
+bool cli_tree_pattern(cli_tree *tree);
 
 /* Reads --subtract and its like into tree->carving. False: reported. */
 bool cli_carving_make(cli_tree *tree);

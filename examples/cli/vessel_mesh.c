@@ -1,4 +1,5 @@
 /* Surfaces drawn by the passes of vessels: ink by texture coordinates of the screen. */
+#include "image.h"
 #include "report.h"
 #include "vessel.h"
 
@@ -95,5 +96,30 @@ bool cli_tree_mesh_object(cli_tree *tree) {
     bool ok = directions && make_directions(mesh, directions) &&
               sdv_object_mesh(&tree->host, &desc, &tree->object) == LAO_OK;
     free(directions);
+    return ok;
+}
+
+bool cli_tree_pattern(cli_tree *tree) {
+    const char *path = tree->options->vessel.pattern;
+    char error[IMAGE_ERROR_SIZE];
+    uint32_t width, height;
+    uint8_t *pixels = NULL;
+    if (!path)
+        return tree->settings.style < SDV_STYLE_PATTERN ||
+               cli_fail("--set style=pattern wants a --pattern FILE.png");
+    if (!image_read_png(path, 3, &width, &height, &pixels, error))
+        return cli_fail("%s", error);
+    uint32_t square = width < height ? width : height;
+    uint32_t size = square < SDV_MOST_PATTERN ? square : SDV_MOST_PATTERN;
+    float *values = cli_new((size_t)size * size, sizeof *values);
+    for (uint32_t i = 0; values && i < size * size; i++) {
+        size_t x = (width - square) / 2 + (size_t)(i % size) * square / size;
+        size_t y = (height - square) / 2 + (size_t)(i / size) * square / size;
+        const uint8_t *p = pixels + 3 * (y * width + x);
+        values[i] = 0.3f * p[0] + 0.6f * p[1] + 0.1f * p[2];
+    }
+    bool ok = values && sdv_object_pattern(&tree->host, values, size, &tree->object) == LAO_OK;
+    free(values);
+    free(pixels);
     return ok;
 }

@@ -63,6 +63,8 @@ static void surfaces(void **state) {
            "\"vertices\":");
     assert_true(dark("t.png", 48, 36) > 20);
     expect(RUN("vessel t.obj --unit mm --layout l.svg"), 1, "surface");
+    expect(RUN("vessel t.obj --unit mm " SMALL "--set style=pattern -o m.png"), 1, "--pattern");
+    expect(RUN("vessel t.obj --unit mm " SMALL "--pattern t.obj -o m.png"), 1, "t.obj");
     expect(RUN("vessel --surface moon -o m.png"), 1, "moon");
     expect(RUN("vessel --surface liver --target 1,2,3,4 -o m.png"), 1, "tree");
     assert_int_not_equal(access("m.png", F_OK), 0);

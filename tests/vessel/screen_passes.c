@@ -469,6 +469,17 @@ static lao_v2 phase_of(lao_v4 t) {
     return lao_v2_make(t.x, t.y);
 }
 
+static float paper(const screen *s, int style, lao_v2 phase, float dark, float shadow, float wide_u,
+                   float wide_v) {
+    float inked = 0, pattern = 0;
+    int n = s->pattern ? (int)s->pattern[0] : 0;
+    for (int i = 0; n > 0 && i < SDV_PATTERN_SAMPLES * SDV_PATTERN_SAMPLES; i++)
+        inked += dark > s->pattern[1 + sdv_pattern_at(phase, wide_u, wide_v, i, n)] ? 1.0f : 0.0f;
+    if (n > 0)
+        pattern = sdv_pattern_ink(inked, dark, wide_u, wide_v);
+    return sdv_style_paper(style, phase, dark, shadow, wide_u, wide_v, pattern);
+}
+
 static lao_v4 ink(const screen *s, uint32_t k, lao_v4 hit, lao_v4 normal, const lao_v4 *ray) {
     const float *v = s->values;
     lao_v2 slope =
@@ -493,9 +504,9 @@ static lao_v4 ink(const screen *s, uint32_t k, lao_v4 hit, lao_v4 normal, const 
                                   0.01f * v[SDV_SETTING_ID_shadow_width] * s->frame.depth.z,
                                   v[SDV_SETTING_ID_shadow_softness]);
     }
-    now = sdv_style_paper(style, phase_of(s->uv[k]), 1 - tone, shadow, wide_u, wide_v);
+    now = paper(s, style, phase_of(s->uv[k]), 1 - tone, shadow, wide_u, wide_v);
     if (before.w > 0) {
-        shown = sdv_style_paper(style, phase_of(before), 1 - tone, shadow, wide_u, wide_v);
+        shown = paper(s, style, phase_of(before), 1 - tone, shadow, wide_u, wide_v);
         shown = shown + before.z;
         rest = sdv_ink_rest(shown, now, v[SDV_SETTING_ID_ink_step]);
     }

@@ -529,6 +529,58 @@ static void ink(void **state) {
     assert_near(sdv_chromadepth(2).z, 1, 0);
 }
 
+/* Any picture is a pattern whose mean ink is the darkness, even in u and v; where it is too small
+   to be seen only its tone is left. */
+static void patterns(void **state) {
+    enum { N = 16, GRID = 160 };
+    static const double wide[] = {0.001, 0.02, 0.6};
+    vessel_host counted;
+    sdv_host host = vessel_host_make(&counted);
+    float values[N * N];
+    sdv_object object;
+    (void)state;
+    for (int i = 0; i < N * N; i++) /* stripes, and equal values too */
+        values[i] = (float)(i % N < 9 ? 3 : i / N);
+    values[5] = NAN;
+    memset(&object, 0, sizeof object);
+    assert_int_equal(sdv_object_pattern(&host, values, N, &object), LAO_ERROR_INVALID_ARGUMENT);
+    object.allocator = host.allocator;
+    object.desc.buffers = object.buffers;
+    assert_int_equal(sdv_object_pattern(&host, values, 257, &object), LAO_ERROR_INVALID_ARGUMENT);
+    assert_int_equal(sdv_object_pattern(&host, NULL, N, &object), LAO_ERROR_INVALID_ARGUMENT);
+    counted.fail_at = counted.takes + 2;
+    assert_int_equal(sdv_object_pattern(&host, values, N, &object), LAO_ERROR_OUT_OF_MEMORY);
+    assert_int_equal(counted.bytes, 0);
+    counted.fail_at = 0;
+    assert_int_equal(sdv_object_pattern(&host, values, N, &object), LAO_OK);
+    assert_true(object.pattern[0] == N && object.desc.buffer_count == 1);
+    for (int w = 0; w < 3; w++) {
+        for (int d = 0; d <= 10; d++) {
+            double sum = 0;
+            float dark = (float)d / 10, a = (float)wide[w];
+            for (int k = 0; k < GRID * GRID; k++) {
+                lao_v2 at = {(float)(2 * PI * ((k % GRID + 0.37) / GRID - 0.5)),
+                             (float)(2 * PI * ((k / GRID + 0.41) / GRID - 0.5))};
+                lao_v2 minus = {-at.x, -at.y};
+                float inked = 0, same = 0;
+                for (int i = 0; i < SDV_PATTERN_SAMPLES * SDV_PATTERN_SAMPLES; i++) {
+                    inked +=
+                        dark > object.pattern[1 + sdv_pattern_at(at, a, a, i, N)] ? 1.0f : 0.0f;
+                    same +=
+                        dark > object.pattern[1 + sdv_pattern_at(minus, a, a, i, N)] ? 1.0f : 0.0f;
+                }
+                assert_true(inked == same || k % 7);
+                sum += (double)sdv_pattern_ink(inked, dark, a, a);
+                if (w == 2)
+                    assert_near(sdv_pattern_ink(inked, dark, a, a), (double)dark, 1e-6);
+            }
+            assert_near(sum / (GRID * GRID), (double)dark, 0.02 * (double)dark + 0.002);
+        }
+    }
+    sdv_object_free(&object);
+    assert_int_equal(counted.bytes, 0);
+}
+
 /* Periods per pixel: head on they are the pixel's part of the period; tilted, more. */
 static void footprints(void **state) {
     lao_v3 x = {1, 0, 0}, y = {0, 1, 0}, down = {0, 0, -1}, n = {0, 0, 1};
@@ -597,7 +649,7 @@ int main(void) {
         cmocka_unit_test(contours),     cmocka_unit_test(ball),    cmocka_unit_test(signs),
         cmocka_unit_test(planes),       cmocka_unit_test(sweeps),  cmocka_unit_test(coherence),
         cmocka_unit_test(disocclusion), cmocka_unit_test(ink),     cmocka_unit_test(footprints),
-        cmocka_unit_test(meshes),
+        cmocka_unit_test(patterns),     cmocka_unit_test(meshes),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

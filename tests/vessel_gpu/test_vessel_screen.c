@@ -305,6 +305,7 @@ static void bump_make(bump *b) {
     desc.colors = b->colors;
     desc.triangles = b->triangles;
     assert_int_equal(sdv_object_mesh(NULL, &desc, &b->object), LAO_OK);
+    assert_int_equal(sdv_object_pattern(NULL, b->positions, 20, &b->object), LAO_OK);
 }
 
 /* A mesh gives the same numbers everywhere, and what it drew, brought by the host as images, the
@@ -320,9 +321,10 @@ static void surfaces(void **state) {
     scene_make(&s, NULL);
     s.shot.objects[0] = &b.object.desc;
     s.vessel.guide = SDV_GUIDE_OWN;
-    s.vessel.style = SDV_STYLE_HATCH;
+    s.vessel.style = SDV_STYLE_PATTERN;
     s.vessel.void_style = SDV_VOID_STIPPLE;
     assert_int_equal(sdv_object_drawn(NULL, b.object.desc.bounds[0], &drawn), LAO_OK);
+    assert_int_equal(sdv_object_pattern(NULL, b.positions, 20, &drawn), LAO_OK);
     for (int i = 0; i < 2; i++) {
         render_result mesh, again;
         render_image imports[4];
@@ -333,6 +335,7 @@ static void surfaces(void **state) {
         s.shot.import_count = 0;
         render_draw(&devices[i], &s.shot, &mesh);
         screen_of(&s, NULL, &c);
+        c.pattern = b.object.pattern;
         c.directions = texels_of(&mesh, "vessel_direction", 0);
         check_frame(&s, &mesh, &c);
         for (uint32_t k = 0; k < WIDTH * HEIGHT; k++)
