@@ -59,9 +59,8 @@ static void surfaces(void **state) {
            "\"triangles\"");
     assert_true(dark("a.png", 48, 36) > 50);
     write_file("t.obj", "v 0 0 0\nv 9 0 0\nv 0 9 0\nv 0 0 9\nf 1 3 2\nf 1 2 4\nf 1 4 3\nf 2 3 4\n");
-    expect(RUN("vessel t.obj --unit mm " INK "--set guide=own -o t.png --dump t.exr --json"), 0,
-           "\"vertices\":");
-    assert_true(dark("t.png", 48, 36) > 20);
+    expect(RUN("vessel t.obj --unit mm " SMALL "-o t.png --dump t.exr --json"), 0, "\"vertices\":");
+    assert_true(dark("t.png", 48, 36) > 0);
     expect(RUN("vessel t.obj --unit mm --layout l.svg"), 1, "surface");
     expect(RUN("vessel t.obj --unit mm " SMALL "--set style=pattern -o m.png"), 1, "--pattern");
     expect(RUN("vessel t.obj --unit mm " SMALL "--pattern t.obj -o m.png"), 1, "t.obj");
