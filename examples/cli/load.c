@@ -268,6 +268,17 @@ void cli_scene_free(cli_scene *scene) {
     memset(scene, 0, sizeof *scene);
 }
 
+cli_set *cli_scene_add(cli_scene *scene) {
+    cli_set *sets = realloc(scene->sets, (scene->count + 1) * sizeof *sets);
+    if (!sets) {
+        cli_fail("out of memory");
+        return NULL;
+    }
+    scene->sets = sets;
+    memset(&sets[scene->count], 0, sizeof *sets);
+    return &sets[scene->count++];
+}
+
 void cli_scene_warn(const cli_scene *scene) {
     for (uint32_t i = 0; i < scene->count; i++) {
         for (uint32_t w = 0; w < scene->sets[i].lines.warning_count; w++)

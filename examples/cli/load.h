@@ -45,6 +45,9 @@ typedef struct cli_scene {
 bool cli_scene_load(const cli_options *options, cli_scene *out);
 void cli_scene_free(cli_scene *scene);
 
+/* One more set behind those of a scene, all zero; it may move them. NULL: reported. */
+cli_set *cli_scene_add(cli_scene *scene);
+
 /* Prints the warnings of all files. */
 void cli_scene_warn(const cli_scene *scene);
 

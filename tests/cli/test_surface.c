@@ -324,6 +324,137 @@ static void uses(void **state) {
     free(a);
 }
 
+/* ---- trees and volumes ------------------------------------------------------------------ */
+
+/* A capsule from (0,0,0) to (0,0,20) mm of radius 2, and a twig of radius `twig`. */
+static void write_tree(const char *path, double twig) {
+    FILE *file = fopen(path, "w");
+    assert_non_null(file);
+    fprintf(file, "1 3 50 60 70 2 -1\n2 3 50 60 90 2 1\n");
+    if (twig > 0)
+        fprintf(file, "3 3 65 60 90 %g 2\n", twig);
+    assert_int_equal(fclose(file), 0);
+}
+
+static double number_of(const cJSON *json, const char *key) {
+    const cJSON *item = cJSON_GetObjectItem(json, key);
+    assert_true(cJSON_IsNumber(item));
+    return item->valuedouble;
+}
+
+/* The wall of a tree is a closed mesh on the tree's round cones; a twig that no voxel could hold is
+   made wide enough, and that is said. */
+static void tree_as_mesh(void **state) {
+    (void)state;
+    write_tree("tree.swc", 0);
+    program_run run = RUN("surface tree.swc --unit mm --json --vertices v.json");
+    assert_int_equal(run.code, 0);
+    cJSON *report = cJSON_Parse(run.out), *json = read_json("v.json");
+    const double pi = 3.141592653589793;
+    double area = 2 * pi * 2 * 20 + 4 * pi * 4, volume = pi * 4 * 20 + 4 * pi * 8 / 3;
+    assert_true(number_of(report, "open_edges") == 0 && number_of(report, "parts") == 1);
+    assert_true(fabs(number_of(report, "area") - area) < 0.01 * area);
+    assert_true(fabs(number_of(report, "volume") - volume) < 0.01 * volume);
+    int n, m;
+    double *p = numbers(json, "p", 3, &n), *normal = numbers(json, "n", 3, &m);
+    for (int i = 0; i < n; i++) {
+        double z = fmin(fmax(p[3 * i + 2] - 70, 0), 20) + 70, d[3], r = 0, along = 0;
+        for (int k = 0; k < 3; k++) {
+            d[k] = p[3 * i + k] - (k == 0 ? 50 : k == 1 ? 60 : z);
+            r += d[k] * d[k];
+            along += d[k] * normal[3 * i + k];
+        }
+        assert_true(fabs(sqrt(r) - 2) < 0.01 && along > 0.99 * sqrt(r));
+    }
+    free(p);
+    free(normal);
+    cJSON_Delete(json);
+    cJSON_Delete(report);
+    program_free(&run);
+    write_tree("twig.swc", 0.001);
+    run = RUN("surface twig.swc --unit mm --grid 64 --json");
+    assert_int_equal(run.code, 0);
+    assert_non_null(strstr(run.out, "--grid makes it less"));
+    report = cJSON_Parse(run.out);
+    assert_true(number_of(report, "parts") == 1 && number_of(report, "open_edges") == 0);
+    cJSON_Delete(report);
+    program_free(&run);
+    expect_fault(RUN("surface tree.swc --value wss -o x.png"), 1, "is a tree");
+    expect_fault(RUN("surface tree.swc --grid 8 -o x.png"), 2, "--grid");
+    expect_fault(RUN("surface tree.swc --seeds 10 -o x.png"), 2, "--seeds");
+}
+
+/* Blood that flows along x through a square duct of 10 x 10 voxels of 1 mm. */
+static void write_volume(const char *path) {
+    FILE *file = fopen(path, "w");
+    assert_non_null(file);
+    fprintf(file, "# vtk DataFile Version 3.0\nx\nASCII\nDATASET STRUCTURED_POINTS\n"
+                  "DIMENSIONS 24 16 16\nORIGIN 0 0 0\nSPACING 1 1 1\nPOINT_DATA 6144\n"
+                  "VECTORS velocity float\n");
+    for (int i = 0; i < 6144; i++) {
+        int y = i / 24 % 16, z = i / 384;
+        bool in = y >= 3 && y < 13 && z >= 3 && z < 13;
+        fprintf(file, "%s\n", in ? "0.5 0 0" : "0 0 0");
+    }
+    assert_int_equal(fclose(file), 0);
+}
+
+/* A volume gives its wall and its flow: the mesh around where the blood is, and lines in it, which
+   in steady flow start at 0. */
+static void volume_as_mesh(void **state) {
+    (void)state;
+    write_volume("duct.vtk");
+    program_run run = RUN("surface duct.vtk --seeds 50 --smooth 5 --json --vertices v.json");
+    assert_int_equal(run.code, 0);
+    cJSON *report = cJSON_Parse(run.out), *json = read_json("v.json");
+    double volume = number_of(report, "volume"), beta = number_of(report, "beta");
+    int n, m;
+    double *p = numbers(json, "p", 3, &n), *phi = numbers(json, "phi", 1, &m);
+    assert_true(fabs(volume - 2400) < 0.1 * 2400);
+    assert_true(number_of(report, "open_edges") == 0);
+    assert_true(beta > 10 && beta <= 2 * 48); /* lines of 24 mm at most, 0.5 mm / ms */
+    for (int i = 0; i < n; i++) {
+        assert_true(p[3 * i] > -1.5 && p[3 * i] < 24.5);
+        assert_true(p[3 * i + 1] > 1.5 && p[3 * i + 1] < 13.5);
+        assert_true(phi[i] >= 0 && phi[i] < 24);
+    }
+    free(p);
+    free(phi);
+    cJSON_Delete(json);
+    cJSON_Delete(report);
+    program_free(&run);
+    expect_ok(RUN("surface duct.vtk --seeds 50 " SMALL "-o duct.png"));
+    expect_fault(RUN("surface duct.vtk --lines line.vtk -o x.png"), 2, "--lines");
+}
+
+/* ---- what is drawn on top ---------------------------------------------------------------- */
+
+/* Legends, a colour map for the wall and contours change the picture, alike on both backends. */
+static void looks(void **state) {
+    static const char *const flags[] = {"", "--legend right",
+                                        "--wall-colormap inferno --near-gamma 6", "--contours 0.2",
+                                        "--suggestive-contours 0.2 --suggestive-threshold 0"};
+    (void)state;
+    write_tube("tube.obj", 0, 1);
+    write_lines("line.vtk", 1);
+    write_camera("camera.json", 0);
+    for (int i = 0; i < 5; i++) {
+        for (int b = 0; b < 2; b++)
+            expect_ok(RUN("surface tube.obj --lines line.vtk --camera camera.json --time 300 "
+                          "--size 240x180 --ssaa 1 "
+                          "--backend %s -o %s%d.png %s",
+                          b ? "vk" : "gl", b ? "vk" : "gl", i, flags[i]));
+        char gl[32], vk[32];
+        snprintf(gl, sizeof gl, "gl%d.png", i);
+        snprintf(vk, sizeof vk, "vk%d.png", i);
+        assert_true(same_files(gl, vk));
+        if (i > 0 && i < 4) /* a straight tube has no suggestive contour */
+            assert_false(same_files("gl0.png", gl));
+    }
+    expect_fault(RUN("surface tube.obj --contours 0 -o x.png"), 2, "--contours");
+    expect_fault(RUN("surface tube.obj --wall-colormap rainbow -o x.png"), 2, "--wall-colormap");
+}
+
 static void faults(void **state) {
     (void)state;
     write_tube("tube.obj", 0, 1);
@@ -367,6 +498,9 @@ int main(int argc, char **argv) {
         cmocka_unit_test(distances_of_a_tube),
         cmocka_unit_test(dump_of_a_tube),
         cmocka_unit_test(uses),
+        cmocka_unit_test(tree_as_mesh),
+        cmocka_unit_test(volume_as_mesh),
+        cmocka_unit_test(looks),
         cmocka_unit_test(faults),
     };
     program = argc > 1 ? argv[1] : "lineao";
