@@ -106,6 +106,7 @@ typedef struct cli_options {
     const char *scene, *out, *dump, *timings, *backend, *camera, *save_camera, *view;
     const char *legend, *legend_title;            /* "off" or a side; NULL: name and unit */
     const char *title, *note;                     /* of a sheet */
+    const char *outline;                          /* a mesh behind and around the lines */
     uint32_t lines, frames, fps, columns, widest; /* 0: not given */
     uint32_t size[2];
     double time; /* ms; NaN: not given */

@@ -148,7 +148,8 @@ static bool render(const cli_options *options, const cli_scene *scene) {
     if (options->backdrop && scene->volume_count == 0)
         return cli_fail("--backdrop: shows what is behind the lines of a velocity volume or of "
                         "--scene flow; there is neither");
-    if (options->backdrop) /* the lines alone; paper comes with what is behind them */
+    if (options->backdrop ||
+        options->outline) /* the lines alone; paper comes with what is behind them */
         memset(shot.background, 0, sizeof shot.background);
     memset(&session, 0, sizeof session);
     bool ok = cli_context_make(scene, &shot, &around.context) &&

@@ -28,6 +28,13 @@ typedef struct cli_volume {
     float *inside;    /* owned; at least 0.5: in the vessel; smooth, so that its outline is */
 } cli_volume;
 
+/* What --outline shows. */
+typedef struct cli_outline {
+    uint32_t vertex_count, triangle_count;
+    float *positions;    /* owned; 3 per vertex, mm, relative to the scene's origin */
+    uint32_t *triangles; /* owned */
+} cli_outline;
+
 /* Everything that is drawn. Points are relative to `origin`, which is the first set's. */
 typedef struct cli_scene {
     const lao_module *module; /* NULL: lines alone */
@@ -37,8 +44,9 @@ typedef struct cli_scene {
     float direction[3], up[3]; /* of the automatic camera */
     cli_volume *volumes;       /* owned; none unless --backdrop asks for them */
     uint32_t volume_count;
-    double beat[2]; /* first and last time (ms); equal: none */
-    double period;  /* ms: of the first set that repeats, else from first to last time */
+    cli_outline outline; /* no triangles unless --outline asks for it */
+    double beat[2];      /* first and last time (ms); equal: none */
+    double period;       /* ms: of the first set that repeats, else from first to last time */
 } cli_scene;
 
 /* Loads what the options name. False: reported, nothing to free. */

@@ -22,7 +22,8 @@ const char *const *scene_surface_names(uint32_t *count);
 /* One line about a surface; NULL for an unknown name. */
 const char *scene_surface_help(const char *name);
 
-/* About the distance to a surface's wall, negative inside: what is meshed. `name` must be known. */
+/* About the distance to a surface's nearest wall, negative inside it: what is meshed. `name` must
+ * be known. */
 double scene_surface_distance(const char *name, const double position[3]);
 
 /* Makes a surface with voxels of `spacing` mm (0: its default; the number of triangles grows with

@@ -455,6 +455,36 @@ static void looks(void **state) {
     expect_fault(RUN("surface tube.obj --wall-colormap rainbow -o x.png"), 2, "--wall-colormap");
 }
 
+/* lineao render --outline: a mesh's silhouette behind and around lines, which stay as they are. */
+static void outlines(void **state) {
+    char error[IMAGE_ERROR_SIZE];
+    uint32_t width, height;
+    (void)state;
+    write_tube("tube.obj", 0, 1);
+    write_lines("line.vtk", 1);
+    write_camera("camera.json", 1); /* 16 mm high: 7.5 pixels are a mm */
+    expect_ok(RUN("render line.vtk --width 1 --camera camera.json --size 160x120 -o plain.png"));
+    expect_ok(RUN("render line.vtk --width 1 --outline tube.obj --camera camera.json "
+                  "--size 160x120 -o outline.png"));
+    uint8_t *pixels[2];
+    for (int i = 0; i < 2; i++)
+        assert_true(
+            image_read_png(i ? "outline.png" : "plain.png", 4, &width, &height, &pixels[i], error));
+    uint32_t counts[3] = {0, 0, 0}; /* as before, tinted, ink */
+    for (uint32_t i = 0; i < width * height; i++) {
+        const uint8_t *a = pixels[0] + 4 * i, *b = pixels[1] + 4 * i;
+        counts[memcmp(a, b, 3) == 0 ? 0 : b[1] > 200 ? 1 : 2]++;
+    }
+    /* The tube's silhouette is 6 mm wide; along z it is seen at 25.6 degrees to the picture. */
+    double area = 6 * 12 * cos(0.4478) + 3.14159 * 9 * sin(0.4478), ring = 2 * (6 + 12);
+    assert_true(fabs(counts[1] + 0.5 * counts[2] - (area - 12 * 0.9) * 56.25) <
+                0.15 * 56.25 * area);
+    assert_true(counts[2] > 1.0 * ring * 7.5 && counts[2] < 2.5 * ring * 7.5);
+    free(pixels[0]);
+    free(pixels[1]);
+    expect_fault(RUN("render line.vtk --outline none.stl -o x.png"), 1, "none.stl");
+}
+
 static void faults(void **state) {
     (void)state;
     write_tube("tube.obj", 0, 1);
@@ -501,6 +531,7 @@ int main(int argc, char **argv) {
         cmocka_unit_test(tree_as_mesh),
         cmocka_unit_test(volume_as_mesh),
         cmocka_unit_test(looks),
+        cmocka_unit_test(outlines),
         cmocka_unit_test(faults),
     };
     program = argc > 1 ? argv[1] : "lineao";
