@@ -137,7 +137,7 @@ static bool find_curvature(cli_wall *wall) {
 static bool find_brightness(cli_wall *wall) {
     double wanted = wall->options->surface.brightness;
     bool given = (wall->settings.set & VSF_SET(brightness)) != 0;
-    if (wanted < 0 && (given || !wall->made))
+    if (wanted < 0 && (given || wall->contents.kinds & IO_MESH))
         return true;
     if (!(wanted > 0) && !find_curvature(wall))
         return false;

@@ -17,7 +17,7 @@ typedef struct cli_wall {
     io_vessel vessel;     /* of a file that holds a tree */
     uint32_t widened;     /* nodes of it that were thinner than this, and were made so wide: */
     double thinnest;      /* mm */
-    bool made;            /* the mesh is from marching cubes */
+    bool made;            /* the mesh is from marching cubes, with their stairs */
     bool turned;          /* it is open, seemed inside out and was turned round */
     vsf_mesh mesh;        /* positions in mm, minus scene.origin */
     cli_scene scene;      /* a set that has the object, and one of lines unless there are none */

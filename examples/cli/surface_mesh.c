@@ -255,7 +255,7 @@ static bool make_from_tree(cli_wall *wall) {
 
 /* ---- the embedded ones ------------------------------------------------------------------ */
 
-static bool make_embedded(cli_wall *wall) {
+static bool make_embedded(cli_wall *wall) { /* needs no smoothing: it has the wall's normals */
     scene_surface surface;
     vsf_mesh_desc desc;
     if (!scene_surface_make(wall->name, 0, &surface))
@@ -263,13 +263,13 @@ static bool make_embedded(cli_wall *wall) {
     memset(&desc, 0, sizeof desc);
     desc.vertex_count = surface.vertex_count;
     desc.positions = surface.positions;
+    desc.normals = surface.normals;
     desc.triangle_count = surface.triangle_count;
     desc.triangles = surface.triangles;
     memcpy(wall->scene.direction, surface.view_direction, sizeof wall->scene.direction);
     memcpy(wall->scene.up, surface.up, sizeof wall->scene.up);
     for (uint32_t i = 0; i < 3 * surface.vertex_count; i++)
         surface.positions[i] = (float)((double)surface.positions[i] - wall->scene.origin[i % 3]);
-    wall->made = true;
     bool ok = vsf_mesh_build(&wall->host, &desc, &wall->mesh) == LAO_OK;
     scene_surface_free(&surface);
     return ok;

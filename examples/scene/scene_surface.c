@@ -201,20 +201,47 @@ static float *sample(wall_function *wall, const flow4d_volume *volume) {
     return values;
 }
 
-/* Puts a mesh behind what is there. */
-static bool append(const flow4d_surface *mesh, scene_surface *out) {
+/* Moves a vertex of marching cubes onto the wall by a step of Newton's, `reach` mm at most;
+ * the normal is the gradient there. */
+static void settle(wall_function *wall, double reach, float *position, float *normal) {
+    const double h = 0.05 * reach;
+    vec3 p = vec3_make((double)position[0], (double)position[1], (double)position[2]), g;
+    for (int step = 0; step < 2; step++) {
+        g = vec3_make(wall(vec3_make(p.x + h, p.y, p.z)) - wall(vec3_make(p.x - h, p.y, p.z)),
+                      wall(vec3_make(p.x, p.y + h, p.z)) - wall(vec3_make(p.x, p.y - h, p.z)),
+                      wall(vec3_make(p.x, p.y, p.z + h)) - wall(vec3_make(p.x, p.y, p.z - h)));
+        double slope = sqrt(vec3_dot(g, g)), way = step < 1 ? -wall(p) * 2 * h / slope : 0;
+        way = fabs(way) < reach ? way : 0; /* no number: 0 */
+        p = vec3_mad(p, g, slope > 0 ? way / slope : 0);
+    }
+    double size = sqrt(vec3_dot(g, g));
+    const double at[3] = {p.x, p.y, p.z}, n[3] = {g.x, g.y, g.z};
+    for (int k = 0; k < 3; k++) {
+        position[k] = (float)at[k];
+        normal[k] = size > 0 ? (float)(n[k] / size) : 0; /* 0: none */
+    }
+}
+
+/* Puts a mesh of a wall behind what is there. */
+static bool append(const flow4d_surface *mesh, wall_function *wall, double reach,
+                   scene_surface *out) {
     uint32_t first = out->vertex_count, done = out->triangle_count;
     size_t vertices = (size_t)first + mesh->vertex_count;
     size_t triangles = (size_t)done + mesh->triangle_count;
     float *positions = realloc(out->positions, sizeof(float) * 3 * (vertices + 1));
     if (positions)
         out->positions = positions;
+    float *normals = realloc(out->normals, sizeof(float) * 3 * (vertices + 1));
+    if (normals)
+        out->normals = normals;
     uint32_t *corners = realloc(out->triangles, sizeof(uint32_t) * 3 * (triangles + 1));
     if (corners)
         out->triangles = corners;
-    if (!positions || !corners)
+    if (!positions || !normals || !corners)
         return false;
     memcpy(positions + 3 * (size_t)first, mesh->vertices, sizeof(float) * 3 * mesh->vertex_count);
+    for (size_t i = first; i < vertices; i++)
+        settle(wall, reach, positions + 3 * i, normals + 3 * i);
     for (size_t i = 0; i < 3 * (size_t)mesh->triangle_count; i++)
         corners[3 * (size_t)done + i] = mesh->triangles[i] + first;
     out->vertex_count = (uint32_t)vertices;
@@ -233,7 +260,7 @@ static bool march(wall_function *wall, flow4d_volume *volume, scene_surface *out
     free(values);
     if (!good)
         return false;
-    good = append(&mesh, out);
+    good = append(&mesh, wall, 0.3 * volume->to_world[0], out);
     flow4d_surface_free(&mesh);
     return good;
 }
@@ -245,18 +272,19 @@ bool scene_surface_make(const char *name, double spacing, scene_surface *out) {
     spacing = r && spacing == 0 ? r->spacing : spacing;
     if (!r || !(spacing >= 0.04 * r->spacing && spacing <= 100 * r->spacing))
         return false;
-    memset(&volume, 0, sizeof volume);
     memset(&made, 0, sizeof made);
-    for (int a = 0; a < 3; a++) {
-        volume.size[a] = (uint32_t)ceil((r->high[a] - r->low[a]) / spacing) + 1;
-        volume.to_world[5 * a] = spacing;
-        volume.to_world[4 * a + 3] = r->low[a];
-    }
     for (int i = 0; i < 2 && r->walls[i]; i++) {
+        memset(&volume, 0, sizeof volume);
+        for (int a = 0; a < 3; a++) {
+            volume.size[a] = (uint32_t)ceil((r->high[a] - r->low[a]) / spacing) + 1;
+            volume.to_world[5 * a] = spacing;
+            volume.to_world[4 * a + 3] = r->low[a];
+        }
         if (!march(r->walls[i], &volume, &made)) {
             scene_surface_free(&made);
             return false;
         }
+        spacing /= 2; /* what is inside is finer */
     }
     memcpy(made.view_direction, r->view_direction, sizeof made.view_direction);
     memcpy(made.up, r->up, sizeof made.up);
@@ -266,6 +294,7 @@ bool scene_surface_make(const char *name, double spacing, scene_surface *out) {
 
 void scene_surface_free(scene_surface *surface) {
     free(surface->positions);
+    free(surface->normals);
     free(surface->triangles);
     memset(surface, 0, sizeof *surface);
 }

@@ -52,7 +52,7 @@ static void surfaces_are_whole(void **state) {
         for (uint32_t v = 0; v < mesh.vertex_count; v++) {
             double p[3] = {(double)mesh.positions[3 * v], (double)mesh.positions[3 * v + 1],
                            (double)mesh.positions[3 * v + 2]};
-            assert_true(fabs(scene_surface_distance(names[i], p)) < 0.3 * spacing);
+            assert_true(fabs(scene_surface_distance(names[i], p)) < 0.02 * spacing);
         }
         printf("%s: %u triangles, %.0f mm^2, %.0f mm^3\n", names[i], mesh.triangle_count,
                mesh.info.area, mesh.info.volume);
