@@ -70,7 +70,7 @@ static const flag_row flags[] = {
     {"--nodes", NULL, "N", FLAG_COUNT, CLI_VESSEL, ALL(vessel.nodes), NULL, "of the embedded tree, when no TREE is given (3000)"},
     {"--cameras", NULL, "FILE.json", FLAG_TEXT, CLI_VESSEL, ALL(vessel.cameras), NULL, "an array of cameras: one picture for each"},
     {"--frames", NULL, "N", FLAG_COUNT, CLI_VESSEL, ALL(frames), NULL, "pictures of one turn around the tree"},
-    {"--lines", NULL, "FILE", FLAG_TEXT, CLI_SURFACE, ALL(surface.lines), NULL, "pathlines with the point array 'time' (ms): drawn inside, and what the surface lights up for"},
+    {"--lines", NULL, "FILE", FLAG_TEXT, CLI_SURFACE, ALL(surface.lines), NULL, "pathlines with the point array 'time' (ms), or steady lines with 'speed' or 'velocity' (m/s): drawn inside, and what the surface lights up for"},
     {"--baseline", NULL, "NAME", FLAG_CHOICE, CLI_SURFACE, ALL(surface.baseline), "transparent|fresnel", "for comparison, the setting shading: transparent or fresnel"},
     {"--brightness", NULL, "MM|auto", FLAG_AUTO, CLI_SURFACE, ALL(surface.brightness), NULL, "how much the wall shows of its shape; auto: by its median curvature (1.5; embedded surfaces: auto)"},
     {"--focus", NULL, "NEAR,FAR|X,Y,Z,R", FLAG_FOCUS, CLI_SURFACE, ALL(surface), NULL, "blur what is nearer or farther from the eye than this (mm), or than a ball"},

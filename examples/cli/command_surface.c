@@ -235,6 +235,9 @@ static bool report(const cli_wall *wall) {
         cJSON_AddNumberToObject(json, "beta", wall->near.beta);
         cJSON_AddItemToObject(json, "gamma", cli_json_float(wall->near.gamma));
         cJSON_AddNumberToObject(json, "steps", wall->near.step_count);
+        cJSON_AddNumberToObject(json, "bytes", /* of all distances */
+                                (double)wall->near.bytes * wall->near.vertex_count *
+                                    wall->near.step_count);
     }
     add_warnings(wall, cJSON_AddArrayToObject(json, "warnings"));
     return cli_write_json(NULL, json);

@@ -25,6 +25,65 @@ static void on_log(void *user, vsf_log_item item, lao_result result, const char 
 
 /* ---- lines ------------------------------------------------------------------------------ */
 
+/* The speed of a point (m/s) by the array of that name, or by the length of "velocity". */
+static double speed_at(const io_attribute *array, uint32_t point) {
+    const float *v = array->data + (size_t)point * array->components;
+    double sum = 0;
+    for (uint32_t k = 0; k < array->components; k++)
+        sum += (double)v[k] * (double)v[k];
+    return sqrt(sum);
+}
+
+/* Times of a line's points: how long the blood takes to them from the first one. Behind a point
+ * where it stands still they are no numbers. */
+static void time_line(const io_lines *lines, const io_attribute *array, uint32_t line,
+                      float *times) {
+    double time = 0;
+    for (uint32_t i = lines->offsets[line]; i < lines->offsets[line + 1]; i++) {
+        const float *p = lines->points + 3 * (size_t)i;
+        if (i > lines->offsets[line]) {
+            double way = hypot(hypot((double)p[0] - (double)p[-3], (double)p[1] - (double)p[-2]),
+                               (double)p[2] - (double)p[-1]);
+            double speed = 0.5 * (speed_at(array, i - 1) + speed_at(array, i));
+            time = speed > 0 ? time + way / speed : (double)NAN; /* mm / (m/s) = ms */
+        }
+        times[i] = (float)time;
+    }
+}
+
+/* Steady lines without times get them from their speed. False: reported. */
+static bool make_times(cli_scene *scene, cli_set *set) {
+    io_lines *lines = &set->lines;
+    const io_attribute *array = NULL;
+    for (uint32_t i = 0; i < lines->point_attribute_count; i++) {
+        const char *name = lines->point_attributes[i].name;
+        if (strcmp(name, "speed") == 0 || strcmp(name, "velocity") == 0)
+            array = &lines->point_attributes[i];
+    }
+    if (set->times || !array)
+        return true;
+    io_attribute made = {cli_new(sizeof "time", 1), 1, cli_new(lines->point_count, sizeof(float))};
+    io_attribute *rows = NULL;
+    if (made.name && made.data) {
+        strcpy(made.name, "time");
+        for (uint32_t line = 0; line < lines->line_count; line++)
+            time_line(lines, array, line, made.data);
+        rows = realloc(lines->point_attributes, (lines->point_attribute_count + 1) * sizeof *rows);
+    }
+    if (!rows) {
+        free(made.name);
+        free(made.data);
+        return cli_fail("out of memory");
+    }
+    lines->point_attributes = rows;
+    rows[lines->point_attribute_count++] = made;
+    set->times = made.data;
+    for (uint32_t i = 0; i < lines->point_count; i++)
+        scene->beat[1] = fmax(scene->beat[1], isfinite(made.data[i]) ? (double)made.data[i] : 0);
+    scene->period = scene->beat[1];
+    return true;
+}
+
 /* What the options ask for as `render` would load it: the lines of a file, of a velocity volume
  * with its mask, which becomes the mesh, or of the embedded flow. */
 static bool load_flow(cli_wall *wall, bool volume) {
@@ -40,6 +99,8 @@ static bool load_flow(cli_wall *wall, bool volume) {
     source->unit = NULL;
     options.files = source;
     options.file_count = source->path ? 1 : 0;
+    options.time = NAN; /* times may be made below */
+    options.frames = 0;
     options.scene = "flow";
     options.lines = EMBEDDED_LINES;
     if (!source->path && !source->color)
@@ -49,7 +110,7 @@ static bool load_flow(cli_wall *wall, bool volume) {
         source->settings.set |= LAO_SET(width);
     }
     options.all = *source;
-    return cli_scene_load(&options, &wall->scene);
+    return cli_scene_load(&options, &wall->scene) && make_times(&wall->scene, &wall->scene.sets[0]);
 }
 
 /* Streamlines of a steady flow run from their first point on, as L14's pathlines do. */
@@ -157,7 +218,8 @@ static bool measure_distances(cli_wall *wall) {
     float values[VSF_SETTING_COUNT];
     vsf_near_desc desc;
     if (!set->times)
-        return cli_fail("%s: has no point array 'time' (ms), by which its lines are lit",
+        return cli_fail("%s: has no point array 'time' (ms), by which its lines are lit; of steady "
+                        "lines 'speed' or 'velocity' (m/s) would do",
                         set->name);
     lao_settings_resolve(vsf_module(), &wall->settings, values);
     memset(&desc, 0, sizeof desc);

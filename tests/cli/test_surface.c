@@ -52,8 +52,9 @@ static void write_tube(const char *path, int inward, double scale) {
     assert_int_equal(fclose(file), 0);
 }
 
-/* A line along the axis at y = shift + 1, 0 ms at its start, 1000 ms at its end; a VTK file. */
-static void write_lines(const char *path, int with_times) {
+/* A line along the axis at y = shift + 1, 0 ms at its start, 1000 ms at its end, as times or as
+   speed (m/s) or (NULL) not told; a VTK file. */
+static void write_lines(const char *path, const char *array) {
     FILE *file = fopen(path, "w");
     assert_non_null(file);
     fprintf(file, "# vtk DataFile Version 3.0\nx\nASCII\nDATASET POLYDATA\nPOINTS 61 float\n");
@@ -63,10 +64,10 @@ static void write_lines(const char *path, int with_times) {
     fprintf(file, "LINES 1 62\n61");
     for (int i = 0; i <= 60; i++)
         fprintf(file, " %d", i);
-    if (with_times) {
-        fprintf(file, "\nPOINT_DATA 61\nSCALARS time float 1\nLOOKUP_TABLE default\n");
+    if (array) {
+        fprintf(file, "\nPOINT_DATA 61\nSCALARS %s float 1\nLOOKUP_TABLE default\n", array);
         for (int i = 0; i <= 60; i++)
-            fprintf(file, "%.6f\n", 1000.0 * i / 60);
+            fprintf(file, "%.6f\n", strcmp(array, "time") == 0 ? 1000.0 * i / 60 : length / 1000);
     }
     fprintf(file, "\n");
     assert_int_equal(fclose(file), 0);
@@ -206,12 +207,11 @@ static void vertices_of_a_tube(void **state) {
 
 /* phi is the distance to the lit part of the line at the time; gamma the 1 % quantile over all
    steps; near = 1 - phi / gamma. */
-static void distances_of_a_tube(void **state) {
-    (void)state;
-    write_tube("tube.obj", 0, 1);
-    write_lines("line.vtk", 1);
-    expect_ok(RUN("surface tube.obj --lines line.vtk --time 300 --set near_steps=11 "
-                  "--vertices v.json"));
+/* slack: of beta, by how lines are written. */
+static void distances_by(const char *lines, double slack) {
+    expect_ok(RUN("surface tube.obj --lines %s --time 300 --set near_steps=11 "
+                  "--vertices v.json",
+                  lines));
     cJSON *json = read_json("v.json");
     int n, count;
     double *p = numbers(json, "p", 3, &n), *phi = numbers(json, "phi", 1, &count);
@@ -219,8 +219,8 @@ static void distances_of_a_tube(void **state) {
     double beta = cJSON_GetObjectItem(json, "beta")->valuedouble;
     double gamma = cJSON_GetObjectItem(json, "gamma")->valuedouble;
     double reach = sqrt(beta * log(4)), some = 0;
-    assert_true(fabs(beta - 2000) < 1e-6); /* twice the median of the last times */
-    for (int i = 0; i < n; i++) {          /* 300 ms is one of the 11 steps */
+    assert_true(fabs(beta - 2000) < slack); /* twice the median of the last times */
+    for (int i = 0; i < n; i++) {           /* 300 ms is one of the 11 steps */
         double z = p[3 * i + 2] - shift[2] + length / 2;
         double low = (300 - reach) / 1000 * length, high = (300 + reach) / 1000 * length;
         double along = z < low ? low - z : z > high ? z - high : 0;
@@ -236,6 +236,15 @@ static void distances_of_a_tube(void **state) {
     free(phi);
     free(near);
     cJSON_Delete(json);
+}
+
+static void distances_of_a_tube(void **state) {
+    (void)state;
+    write_tube("tube.obj", 0, 1);
+    write_lines("line.vtk", "time");
+    write_lines("steady.vtk", "speed");
+    distances_by("line.vtk", 1e-6);
+    distances_by("steady.vtk", 1e-3);
     expect_fault(RUN("surface tube.obj --lines line.vtk --set near_steps=0 -o x.png"), 2,
                  "near_steps");
 }
@@ -256,7 +265,7 @@ static void dump_of_a_tube(void **state) {
     image_exr exr[2];
     (void)state;
     write_tube("tube.obj", 0, 1);
-    write_lines("line.vtk", 1);
+    write_lines("line.vtk", "time");
     write_camera("camera.json", 0);
     for (int b = 0; b < 2; b++) {
         expect_ok(RUN("surface tube.obj --lines line.vtk --time 300 --camera camera.json " SMALL
@@ -297,7 +306,7 @@ static void dump_of_a_tube(void **state) {
 static void uses(void **state) {
     (void)state;
     write_tube("cm.obj", 1, 0.1);
-    write_lines("line.vtk", 1);
+    write_lines("line.vtk", "time");
     program_run run = RUN("surface cm.obj --unit cm --vertices v.json --json");
     assert_int_equal(run.code, 0);
     assert_string_equal(run.err, "");
@@ -436,7 +445,7 @@ static void looks(void **state) {
                                         "--suggestive-contours 0.2 --suggestive-threshold 0"};
     (void)state;
     write_tube("tube.obj", 0, 1);
-    write_lines("line.vtk", 1);
+    write_lines("line.vtk", "time");
     write_camera("camera.json", 0);
     for (int i = 0; i < 5; i++) {
         for (int b = 0; b < 2; b++)
@@ -461,7 +470,7 @@ static void outlines(void **state) {
     uint32_t width, height;
     (void)state;
     write_tube("tube.obj", 0, 1);
-    write_lines("line.vtk", 1);
+    write_lines("line.vtk", "time");
     write_camera("camera.json", 1); /* 16 mm high: 7.5 pixels are a mm */
     expect_ok(RUN("render line.vtk --width 1 --camera camera.json --size 160x120 -o plain.png"));
     expect_ok(RUN("render line.vtk --width 1 --outline tube.obj --camera camera.json "
@@ -488,7 +497,7 @@ static void outlines(void **state) {
 static void faults(void **state) {
     (void)state;
     write_tube("tube.obj", 0, 1);
-    write_lines("plain.vtk", 0);
+    write_lines("plain.vtk", NULL);
     expect_fault(RUN("surface"), 2, "no output");
     expect_fault(RUN("surface none.stl -o x.png"), 1, "none.stl");
     expect_fault(RUN("surface tube.obj tube.obj -o x.png"), 2, "second MESH");
