@@ -32,7 +32,7 @@ chmod +x "$work/program"
 figures=$(sed -n 's/^figure \([a-z0-9_]*\) .*/\1/p' "$root"/examples/figures/*.table)
 for name in $figures; do
     case $name in
-        koehler8_data | lawonn_value)
+        koehler8_data | lawonn7_data | lawonn_value)
             [ ! -e "$work/all/$name.png" ] || die "$name: was drawn without data"
             grep -q "$name: LINEAO_DATA" "$work/err" || die "$name: was left out without a word"
             ;;
