@@ -365,8 +365,21 @@ static double length_of(const float *points, uint32_t count) {
     return length;
 }
 
+/* Evens a line's points between its ends out: zero sets zigzag from triangle to triangle. */
+static void even_out(float *points, uint32_t count) {
+    for (int pass = 0; pass < 6; pass++) {
+        float before[3];
+        memcpy(before, points, sizeof before);
+        for (uint32_t i = 3; i + 3 < 3 * count; i++) {
+            float here = points[i];
+            points[i] = 0.25f * before[i % 3] + 0.5f * here + 0.25f * points[i + 3];
+            before[i % 3] = here;
+        }
+    }
+}
+
 /* Flat ink, a line's width before the wall that it lies on. Shorter lines than `least` (mm) are
- * left out. */
+ * left out, and longer ones evened out if there is such a bound. */
 static bool fill_contours(cli_set *set, const vsf_polylines *lines, const float eye[4],
                           double width, double least) {
     static const float ink[4] = {0.1f, 0.1f, 0.12f, 1};
@@ -391,6 +404,8 @@ static bool fill_contours(cli_set *set, const vsf_polylines *lines, const float 
             step_forward(points + 3 * (size_t)i, eye, width,
                          out->points + 3 * (size_t)out->point_count++);
         out->offsets[++out->line_count] = out->point_count;
+        if (least > 0)
+            even_out(out->points + 3 * (size_t)(out->point_count - count), count);
     }
     return true;
 }

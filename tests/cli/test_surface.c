@@ -325,8 +325,8 @@ static void uses(void **state) {
     expect_ok(RUN("surface --scene aneurysm " SMALL "-o a.png --save-camera c.json"));
     expect_ok(RUN("surface --scene aneurysm --camera c.json " SMALL "-o b.png --backend vk"));
     assert_true(same_files("a.png", "b.png"));
-    expect_ok(RUN("surface --scene aneurysm --baseline transparent " SMALL "-o t.png"));
-    expect_ok(RUN("surface --scene aneurysm --focus 20,30 --depth-shadow on --attenuation on " SMALL
+    expect_ok(RUN("surface cm.obj --unit cm --baseline transparent " SMALL "-o t.png"));
+    expect_ok(RUN("surface cm.obj --unit cm --focus 20,30 --depth-shadow on --attenuation on " SMALL
                   "-o e.png --timings t.json"));
     char *a = read_text("t.json");
     assert_non_null(strstr(a, "\"focus_y\""));
