@@ -98,19 +98,19 @@ static bool edit_planes(void *user, cli_planes *planes) {
 
 /* ---- pictures ---------------------------------------------------------------------------- */
 
-bool cli_write_picture(const char *path, cli_video *video, cli_session *session,
-                       const cli_shot *shot) {
+bool cli_write_picture(const char *path, cli_video *video, cli_session *session, bool opaque,
+                       cli_picture_edit edit, void *user) {
     char error[IMAGE_ERROR_SIZE];
-    uint8_t *pixels = cli_session_picture(session);
-    if (!pixels)
-        return false;
-    int channels = shot->background[3] < 1 ? 4 : 3;
-    for (size_t i = 0; channels == 3 && i < (size_t)shot->width * shot->height; i++)
-        memmove(pixels + 3 * i, pixels + 4 * i, 3);
-    bool ok = video ? cli_video_add(video, pixels)
-                    : image_write_png(path, shot->width, shot->height, pixels, channels, error) ||
-                          cli_fail("%s", error);
-    free(pixels);
+    picture p = {0, 0, NULL};
+    bool ok = cli_session_picture(session, &p) && (!edit || edit(user, &p));
+    for (size_t i = 0; ok && opaque && i < (size_t)p.width * p.height; i++)
+        memmove(p.pixels + 3 * i, p.pixels + 4 * i, 3);
+    if (ok && video)
+        ok = cli_video_add(video, p.pixels);
+    else if (ok)
+        ok = image_write_png(path, p.width, p.height, p.pixels, opaque ? 3 : 4, error) ||
+             cli_fail("%s", error);
+    picture_free(&p);
     return ok;
 }
 
@@ -125,8 +125,9 @@ static bool write_frame(cli_tree *tree, cli_session *session, const cli_shot *sh
         char *numbered = frame < 0 ? NULL : cli_frame_path(paths[i], (uint32_t)frame);
         const char *path = numbered ? numbered : paths[i];
         ok = (frame < 0 || numbered) && cli_go_on() &&
-             (i == 0 ? cli_dump(path, session, &tree->scene, shot, edit_planes, tree)
-                     : cli_write_picture(path, video, session, shot));
+             (i == 0
+                  ? cli_dump(path, session, &tree->scene, shot, edit_planes, tree)
+                  : cli_write_picture(path, video, session, shot->background[3] >= 1, NULL, NULL));
         free(numbered);
     }
     return ok;
