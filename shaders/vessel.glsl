@@ -62,6 +62,17 @@ sdv_solid sdv_solid_add_all(samplerBuffer shapes, samplerBuffer fields, sdv_soli
     }
     return r;
 }
+/* How near to a vessel a ray must pass for anything to be drawn of it, mm; pixels are widest at the far end. */
+float sdv_frame_reach(float supersampling) {
+    float zoom = sdv_zoom(lao_frame.scale, lao_frame.depth, lao_frame.depth.x + lao_frame.depth.z, supersampling);
+    return sdv_near_miss_reach(sdv_outline_width(lao_setting_silhouette, lao_setting_outline_unit, zoom),
+                               sdv_outline_width(lao_setting_contour, lao_setting_outline_unit, zoom),
+                               lao_setting_shadow_width, lao_setting_mark_halo, lao_frame.depth.z);
+}
+/* Signed distance of the tree at p. */
+float sdv_tree_distance_at(samplerBuffer cells, samplerBuffer ids, samplerBuffer cones, sdv_box box, vec4 cell, lao_v3 p) {
+    return sdv_near_at(cells, ids, cones, box, cell, p, lao_v3_make(0.0, 0.0, 1.0)).distance;
+}
 /* The distance, and the number of the nearest cone of the cell's list (-1: it has none). */
 struct sdv_solid_sample {
     sdv_solid solid;

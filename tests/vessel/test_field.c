@@ -200,16 +200,16 @@ static void light_and_openness(void **state) {
     sdv_tree t = tree_of(4, p, r, 2, s);
     sdv_grid g = grid_of(&t, 96);
     lao_v3 up = v3(0, 0, 1);
-    assert_true(sdv_shadow(&g, v3(0, 0, 5), up, 8, 0.1f) == 0.0f);  /* in the umbra */
-    assert_true(sdv_shadow(&g, v3(15, 0, 5), up, 8, 0.1f) > 0.95f); /* far beside */
+    assert_true(sdv_shadow(&g, NULL, v3(0, 0, 5), up, 8, 0.1f) == 0.0f);  /* in the umbra */
+    assert_true(sdv_shadow(&g, NULL, v3(15, 0, 5), up, 8, 0.1f) > 0.95f); /* far beside */
     double before = 0;
     for (double x = 1; x < 6; x += 0.25) { /* light comes back with the distance */
-        double lit = (double)sdv_shadow(&g, v3(x, 0, 5), up, 8, 0.1f);
+        double lit = (double)sdv_shadow(&g, NULL, v3(x, 0, 5), up, 8, 0.1f);
         assert_true(lit >= before - 0.02 && lit <= 1);
         before = lit;
     }
     assert_true(before > 0.9);
-    assert_true(sdv_shadow(&g, v3(0, 0, 13), up, 8, 0.1f) == 1.0f); /* on top: nothing above */
+    assert_true(sdv_shadow(&g, NULL, v3(0, 0, 13), up, 8, 0.1f) == 1.0f); /* on top: nothing above */
     float open = sdv_openness(&g, v3(20, 0, 5), up, 4, 0),
           below = sdv_openness(&g, v3(0, 0, 5), up, 8, 0);
     assert_true(open > 0.99f && below < 0.9f && below > 0.1f);

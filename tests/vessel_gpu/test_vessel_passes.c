@@ -57,7 +57,7 @@ static void ray_of(const lao_frame_uniforms *frame, uint32_t x, uint32_t y, sdv_
 static float reach_of(const lao_frame_uniforms *frame) {
     float zoom = sdv_zoom(frame->scale, frame->depth, frame->depth.x + frame->depth.z, 1);
     return sdv_near_miss_reach(sdv_outline_width(1.25f, 0, zoom), sdv_outline_width(0.8f, 0, zoom),
-                               1.5f, frame->depth.z);
+                               1.5f, 0, frame->depth.z);
 }
 
 /* The traced images against C; returns how many pixels hit. */
@@ -270,8 +270,8 @@ static void carving_make(carving *c, uint32_t count) {
     c->shapes.field_count = SAMPLES * SAMPLES * SAMPLES;
 }
 
-static uint32_t check_carved(const subject *tree, const carving *c, const render_result *result,
-                             uint32_t *cut) {
+static uint32_t check_carved(const scene *s, const subject *tree, const carving *c,
+                             const render_result *result, uint32_t *cut) {
     const render_image *position = render_find(result, "vessel_position", 0);
     const render_image *normal = render_find(result, "vessel_normal", 0);
     const render_image *ray_image = render_find(result, "vessel_ray", 0);
@@ -284,6 +284,8 @@ static uint32_t check_carved(const subject *tree, const carving *c, const render
         sdv_ray ray;
         sdv_hit hit;
         ray_of(&result->frame, x, y, &ray);
+        ray.flags = s->vessel.near_miss == SDV_NEAR_MISS_NONE ? 0 : SDV_TRACE_NEAREST;
+        ray.reach = s->vessel.near_miss == SDV_NEAR_MISS_CLOSE ? reach_of(&result->frame) : 0.0f;
         sdv_trace_shapes(&tree->grid, &c->shapes, &ray, &hit, &shape);
         bool is_cut = hit.cone == SDV_CUT_CONE;
         q = lao_v4_make(hit.position.x, hit.position.y, hit.position.z,
@@ -291,8 +293,8 @@ static uint32_t check_carved(const subject *tree, const carving *c, const render
                         : is_cut             ? -2.0f
                                              : (float)hit.cone);
         m = lao_v4_make(hit.normal.x, hit.normal.y, hit.normal.z, hit.d_min);
-        t = lao_v4_make(hit.t, is_cut ? (float)shape : 0.0f, (float)hit.steps,
-                        hit.inside ? 1.0f : 0.0f);
+        t = lao_v4_make(hit.t, hit.t_min, (float)hit.steps,
+                        (is_cut ? 2.0f * (float)shape : 0.0f) + (hit.inside ? 1.0f : 0.0f));
         hits += hit.cone != SDV_NONE;
         *cut += is_cut;
         wrong += memcmp(&p, &q, sizeof p) != 0 || memcmp(&n, &m, sizeof n) != 0 ||
@@ -312,12 +314,13 @@ static void with_shapes(void **state) {
         render_result results[2];
         scene_make(&s, &tree);
         carving_make(&c, count);
+        s.vessel.near_miss = (float)(count % 3);
         assert_int_equal(sdv_object_shapes(NULL, &c.shapes, NULL, &tree.object), LAO_OK);
         for (int i = 0; i < 2; i++) {
             uint32_t cut = 0;
             render_need(&devices[i]);
             render_draw(&devices[i], &s.shot, &results[i]);
-            assert_in_range(check_carved(&tree, &c, &results[i], &cut), 200, WIDTH * HEIGHT);
+            assert_in_range(check_carved(&s, &tree, &c, &results[i], &cut), 200, WIDTH * HEIGHT);
             assert_in_range(cut, 10, WIDTH * HEIGHT);
         }
         same_image("zbuffer", &results[0], &results[1]);
