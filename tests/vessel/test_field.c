@@ -192,6 +192,70 @@ static void carving_opens_vessels(void **state) {
     sdv_tree_free(&t);
 }
 
+/* Rays past the tree, past a ball that is added and past what a cut has left: the near miss is
+   where the ray is nearest to what is drawn, not to what is cut away. */
+static void near_misses_of_shapes(void **state) {
+    (void)state;
+    const float p[] = {0, -20, 0, 0, 20, 0}, r[] = {2, 2};
+    const sdv_segment s[] = {{0, 1}};
+    sdv_tree t = tree_of(2, p, r, 1, s);
+    sdv_grid g = grid_of(&t, 96);
+    const sdv_shape list[2] = {
+        shape(SDV_SHAPE_PLANE, SDV_SUBTRACTION, v4(0, 1, 0, 0), v4(0, 0, 0, 0)), /* y < 0 goes */
+        shape(SDV_SHAPE_BALL, SDV_UNION, v4(14, 10, 5, 3), v4(0, 0, 0, 0))};
+    const sdv_shapes shapes = {list, 2, NULL, 0};
+    for (int i = 0; i < 2; i++) {
+        float reach = i ? 3.0f : 0.0f; /* exact, close */
+        sdv_ray ray = {v3(2.5f, 10, 40), v3(0, 0, -1), SDV_TRACE_NEAREST, reach};
+        sdv_hit hit;
+        sdv_trace_shapes(&g, &shapes, &ray, &hit, NULL);
+        assert_int_equal(hit.cone, SDV_NONE);
+        assert_near(hit.d_min, 0.5, 0.02); /* the vessel */
+        assert_near(hit.t_min, 40, 0.6);
+        ray.origin = v3(10.2f, 10, 40); /* the ball, whose middle is 3.8 mm beside */
+        sdv_trace_shapes(&g, &shapes, &ray, &hit, NULL);
+        assert_int_equal(hit.cone, SDV_NONE);
+        assert_near(hit.d_min, 0.8, 0.03);
+        assert_near(hit.t_min, 35, 0.6);
+        ray.origin = v3(1, -0.7f, 40); /* in front of the cut's rim: an edge at y = 0 */
+        sdv_trace_shapes(&g, &shapes, &ray, &hit, NULL);
+        assert_int_equal(hit.cone, SDV_NONE);
+        assert_near(hit.d_min, 0.7, 0.03);
+        ray.origin = v3(1, -10, 40); /* what is cut away is passed through */
+        sdv_trace_shapes(&g, &shapes, &ray, &hit, NULL);
+        assert_int_equal(hit.cone, SDV_NONE);
+        assert_true(hit.d_min > 3);
+        ray.origin = v3(2.3f, 10, -40); /* past the tree, then onto the ball */
+        ray.direction = lao_v3_unit(v3(12.0f - 2.3f, 0, 45), v3(0, 0, 1));
+        sdv_trace_shapes(&g, &shapes, &ray, &hit, NULL);
+        assert_true(hit.cone == SDV_CUT_CONE || hit.d_min < SDV_FAR);
+        ray.flags = 0;
+        sdv_trace_shapes(&g, &shapes, &ray, &hit, NULL);
+        assert_true(hit.d_min == SDV_FAR);
+    }
+    sdv_grid_free(&g);
+    sdv_tree_free(&t);
+}
+
+/* What a cut has taken away casts no shadow, what is added does. */
+static void shapes_cast_shadows(void **state) {
+    (void)state;
+    const float p[] = {-30, 0, 0, 30, 0, 0, 0, -30, 12, 0, 30, 12}, r[] = {5, 5, 1, 1};
+    const sdv_segment s[] = {{0, 1}, {2, 3}};
+    sdv_tree t = tree_of(4, p, r, 2, s);
+    sdv_grid g = grid_of(&t, 96);
+    const sdv_shape list[2] = {
+        shape(SDV_SHAPE_BOX, SDV_SUBTRACTION, v4(0, 0, 12, 0), v4(8, 8, 3, 0)),
+        shape(SDV_SHAPE_BALL, SDV_UNION, v4(15, 0, 60, 3), v4(0, 0, 0, 0))}; /* out of the box */
+    const sdv_shapes shapes = {list, 2, NULL, 0};
+    lao_v3 up = v3(0, 0, 1);
+    assert_true(sdv_shadow(&g, NULL, v3(0, 0, 5), up, 8, 0.1f) == 0.0f);
+    assert_true(sdv_shadow(&g, &shapes, v3(0, 0, 5), up, 8, 0.1f) > 0.5f);
+    assert_true(sdv_shadow(&g, &shapes, v3(15, 0, 5), up, 8, 0.1f) == 0.0f);
+    sdv_grid_free(&g);
+    sdv_tree_free(&t);
+}
+
 static void light_and_openness(void **state) {
     (void)state;
     /* a wide vessel below, a thin one above it, across */
@@ -209,7 +273,8 @@ static void light_and_openness(void **state) {
         before = lit;
     }
     assert_true(before > 0.9);
-    assert_true(sdv_shadow(&g, NULL, v3(0, 0, 13), up, 8, 0.1f) == 1.0f); /* on top: nothing above */
+    assert_true(sdv_shadow(&g, NULL, v3(0, 0, 13), up, 8, 0.1f) ==
+                1.0f); /* on top: nothing above */
     float open = sdv_openness(&g, v3(20, 0, 5), up, 4, 0),
           below = sdv_openness(&g, v3(0, 0, 5), up, 8, 0);
     assert_true(open > 0.99f && below < 0.9f && below > 0.1f);
@@ -439,6 +504,8 @@ int main(void) {
         cmocka_unit_test(shapes_have_distances),
         cmocka_unit_test(boolean_operations),
         cmocka_unit_test(carving_opens_vessels),
+        cmocka_unit_test(near_misses_of_shapes),
+        cmocka_unit_test(shapes_cast_shadows),
         cmocka_unit_test(light_and_openness),
         cmocka_unit_test(pieces_are_exact),
         cmocka_unit_test(targets_equal_brute_force),

@@ -136,6 +136,14 @@ static bool shade_of(const subject *tree, const float *v, const lao_frame_unifor
                                                0.01f * v[SDV_SETTING_ID_occlusion_reach] * diameter,
                                                r.w > 0.5f),
                            v[SDV_SETTING_ID_occlusion_strength]);
+    if (v[SDV_SETTING_ID_field_shadow] > 0) {
+        lao_v3 lamp = sdv_shadow_light(frame->world, v[SDV_SETTING_ID_shadow_light_x],
+                                       v[SDV_SETTING_ID_shadow_light_y]);
+        float lit =
+            sdv_shadow(&tree->grid, NULL, p, lamp, 1.0f / v[SDV_SETTING_ID_field_shadow_softness],
+                       sdv_shadow_bias(tree->grid.cell));
+        light = sdv_dimmed(light, 1.0f - lit, v[SDV_SETTING_ID_field_shadow_strength]);
+    }
     if (near)
         light = sdv_dimmed(light,
                            sdv_depth_shadow(n.w, r.y, r.x, v[SDV_SETTING_ID_shadow_ratio],
@@ -210,6 +218,8 @@ static void perspective(void **state) {
     s.vessel.near_miss = SDV_NEAR_MISS_EXACT;
     check(&s, &tree, 300);
     s.vessel.near_miss = SDV_NEAR_MISS_NONE;
+    check(&s, &tree, 300);
+    s.vessel.field_shadow = 1;
     check(&s, &tree, 300);
     subject_free(&tree);
 }
@@ -315,7 +325,9 @@ static void with_shapes(void **state) {
         scene_make(&s, &tree);
         carving_make(&c, count);
         s.vessel.near_miss = (float)(count % 3);
-        assert_int_equal(sdv_object_shapes(NULL, &c.shapes, NULL, &tree.object), LAO_OK);
+        const float colors[3 * SHAPES] = {-1, 0, 0, 0.9f, 0.5f, 0.1f, -1, 0, 0, 0, 1, 0};
+        assert_int_equal(sdv_object_shapes(NULL, &c.shapes, colors, &tree.object), LAO_OK);
+        s.vessel.field_shadow = count > 2 ? 1.0f : 0.0f;
         for (int i = 0; i < 2; i++) {
             uint32_t cut = 0;
             render_need(&devices[i]);
