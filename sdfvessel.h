@@ -374,7 +374,16 @@ SDV_API void sdv_trace(const sdv_grid *grid, const sdv_ray *ray, sdv_hit *hit);
  * what the field gives for free */
 
 enum { SDV_UNION = 0, SDV_INTERSECTION = 1, SDV_SUBTRACTION = 2 };
-enum { SDV_SHAPE_BALL = 0, SDV_SHAPE_BOX = 1, SDV_SHAPE_PLANE = 2, SDV_SHAPE_FIELD = 3 };
+enum {
+    SDV_SHAPE_BALL = 0,
+    SDV_SHAPE_BOX = 1,
+    SDV_SHAPE_PLANE = 2,
+    SDV_SHAPE_FIELD = 3,
+    SDV_SHAPE_TREE = 4 /* the tree itself once more: an organ, cut open, and the tree in it; not to
+                          be subtracted */
+    ,
+    SDV_SHAPE_ELLIPSOID = 5
+};
 
 /* What a tree is combined with, one after the other (struct sdv_shape, below). `fields` holds the
    samples of the shapes of kind SDV_SHAPE_FIELD: signed distances, x fastest, none farther from the
@@ -957,7 +966,8 @@ LAO_FN float sdv_polish(float t, float distance, lao_v3 gradient, lao_v3 directi
 /* ---- shapes and Boolean operations */
 /* kind: SDV_SHAPE_...; ball: a = centre, radius; box: a = centre, b = half its size; plane: a =
    unit normal, offset, inside where normal . p < offset; field: a = place of the first sample,
-   distance of neighbours; b = samples along each axis, 2 or more, and where the first one is. */
+   distance of neighbours; b = samples along each axis, 2 or more, and where the first one is;
+   ellipsoid: a = centre, b = half axes. */
 struct sdv_shape {
     lao_v4 a, b;
     lao_int kind, operation;
@@ -973,6 +983,8 @@ typedef struct sdv_shape sdv_shape;
 #define SDV_SHAPE_BOX 1
 #define SDV_SHAPE_PLANE 2
 #define SDV_SHAPE_FIELD 3
+#define SDV_SHAPE_TREE 4
+#define SDV_SHAPE_ELLIPSOID 5
 #endif
 LAO_FN lao_v3 sdv_box_apart(lao_v3 p, lao_v4 centre, lao_v4 half_size) {
     LAO_EXACT float x = lao_abs(p.x - centre.x) - half_size.x;
@@ -1038,7 +1050,32 @@ LAO_FN float sdv_lattice_distance(sdv_lattice at, float value) {
     LAO_EXACT float d = 0.57f * value;
     return lao_max(d, at.apart > 0.0f ? at.apart : d);
 }
+/* What is nearer to the distance than that bound, and no bound. */
+LAO_FN float sdv_lattice_estimate(sdv_lattice at, float value) {
+    return lao_max(value, at.apart > 0.0f ? at.apart : value);
+}
+/* p from the middle of an ellipsoid, as if it were the unit ball. */
+LAO_FN lao_v3 sdv_ellipsoid_place(lao_v3 p, sdv_shape shape) {
+    LAO_EXACT float x = (p.x - shape.a.x) / shape.b.x;
+    LAO_EXACT float y = (p.y - shape.a.y) / shape.b.y;
+    LAO_EXACT float z = (p.z - shape.a.z) / shape.b.z;
+    return lao_v3_make(x, y, z);
+}
+/* Across its surface, as long as the place there changes per mm. */
+LAO_FN lao_v3 sdv_ellipsoid_slope(lao_v3 place, sdv_shape shape) {
+    LAO_EXACT float x = place.x / shape.b.x;
+    LAO_EXACT float y = place.y / shape.b.y;
+    LAO_EXACT float z = place.z / shape.b.z;
+    return lao_v3_make(x, y, z);
+}
+/* Of an ellipsoid a lower bound: no distance changes faster along the shortest half axis. */
 LAO_FN float sdv_shape_distance(lao_v3 p, sdv_shape shape) {
+    if (shape.kind == SDV_SHAPE_ELLIPSOID) {
+        lao_v3 e = sdv_ellipsoid_place(p, shape);
+        LAO_EXACT float d =
+            (lao_sqrt(lao_v3_dot(e, e)) - 1.0f) * lao_min(shape.b.x, lao_min(shape.b.y, shape.b.z));
+        return d;
+    }
     if (shape.kind == SDV_SHAPE_PLANE) {
         LAO_EXACT float d = lao_v3_dot(p, lao_v3_make(shape.a.x, shape.a.y, shape.a.z)) - shape.a.w;
         return d;
@@ -1054,11 +1091,26 @@ LAO_FN float sdv_shape_distance(lao_v3 p, sdv_shape shape) {
     LAO_EXACT float d = lao_sqrt(lao_v3_dot(q, q)) - shape.a.w;
     return d;
 }
+/* For outlines, occlusion and shadows: as near to the distance as can be had, but no bound. */
+LAO_FN float sdv_shape_estimate(lao_v3 p, sdv_shape shape) {
+    if (shape.kind == SDV_SHAPE_ELLIPSOID) {
+        lao_v3 e = sdv_ellipsoid_place(p, shape);
+        lao_v3 slope = sdv_ellipsoid_slope(e, shape);
+        LAO_EXACT float radial = lao_sqrt(lao_v3_dot(e, e));
+        LAO_EXACT float steep = lao_max(lao_sqrt(lao_v3_dot(slope, slope)), 1.0e-30f);
+        LAO_EXACT float d = radial * (radial - 1.0f) / steep;
+        return d;
+    }
+    return sdv_shape_distance(p, shape);
+}
 LAO_FN lao_v3 sdv_shape_gradient(lao_v3 p, sdv_shape shape) {
     lao_v3 a = lao_v3_make(shape.a.x, shape.a.y, shape.a.z);
     lao_v3 up = lao_v3_make(0.0f, 0.0f, 1.0f);
     if (shape.kind == SDV_SHAPE_PLANE) {
         return a;
+    }
+    if (shape.kind == SDV_SHAPE_ELLIPSOID) {
+        return lao_v3_unit(sdv_ellipsoid_slope(sdv_ellipsoid_place(p, shape), shape), up);
     }
     lao_v3 q = lao_v3_sub(p, a);
     if (shape.kind != SDV_SHAPE_BOX) {
@@ -4182,13 +4234,17 @@ static lao_v4 sdv__field_value(const sdv_shapes *shapes, const sdv_lattice *l) {
     const float *at = shapes->fields + l->at;
     return sdv_lattice_value(l->part, sdv__four(at, l->row), sdv__four(at + l->layer, l->row));
 }
-static float sdv__shape_distance(const sdv_shapes *shapes, uint32_t i, lao_v3 p) {
+/* bound: no more than the distance; else as near to it as can be had. */
+static float sdv__shape_distance(const sdv_shapes *shapes, uint32_t i, lao_v3 p, bool bound) {
+    const sdv_shape shape = shapes->shapes[i];
     sdv_lattice l;
-    if (shapes->shapes[i].kind != SDV_SHAPE_FIELD) {
-        return sdv_shape_distance(p, shapes->shapes[i]);
+    float value;
+    if (shape.kind != SDV_SHAPE_FIELD) {
+        return bound ? sdv_shape_distance(p, shape) : sdv_shape_estimate(p, shape);
     }
-    l = sdv_lattice_at(p, shapes->shapes[i]);
-    return sdv_lattice_distance(l, sdv__field_value(shapes, &l).w);
+    l = sdv_lattice_at(p, shape);
+    value = sdv__field_value(shapes, &l).w;
+    return bound ? sdv_lattice_distance(l, value) : sdv_lattice_estimate(l, value);
 }
 static lao_v3 sdv__shape_gradient(const sdv_shapes *shapes, lao_int i, lao_v3 p) {
     sdv_lattice l;
@@ -4201,18 +4257,19 @@ static lao_v3 sdv__shape_gradient(const sdv_shapes *shapes, lao_int i, lao_v3 p)
     return lao_v3_unit(lao_v3_make(v.x, v.y, v.z), lao_v3_make(0.0f, 0.0f, 1.0f));
 }
 /* `tree`, its distance or a lower bound of that at p, combined with all shapes. */
-static sdv_solid sdv__solid_of(const sdv_shapes *shapes, float tree, lao_v3 p) {
+static sdv_solid sdv__solid_of(const sdv_shapes *shapes, float tree, lao_v3 p, bool bound) {
     sdv_solid s = sdv_solid_start(tree);
     uint32_t i;
     for (i = 0; i < shapes->count; i++) {
-        s = sdv_solid_add(s, sdv__shape_distance(shapes, i, p), shapes->shapes[i].operation,
-                          (lao_int)i);
+        bool again = shapes->shapes[i].kind == SDV_SHAPE_TREE;
+        s = sdv_solid_add(s, again ? tree : sdv__shape_distance(shapes, i, p, bound),
+                          shapes->shapes[i].operation, again ? -1 : (lao_int)i);
     }
     return s;
 }
 static sdv_solid sdv__solid_at(const sdv_grid *g, const sdv_shapes *shapes, lao_v3 p,
                                uint32_t *cone) {
-    return sdv__solid_of(shapes, sdv__tree_bound(g, p, cone), p);
+    return sdv__solid_of(shapes, sdv__tree_bound(g, p, cone), p, true);
 }
 static lao_v3 sdv__solid_gradient(const sdv_grid *g, const sdv_shapes *shapes, const sdv_solid *s,
                                   lao_v3 p, uint32_t cone) {
@@ -4257,7 +4314,7 @@ static float sdv__watched(const sdv_grid *g, const sdv_shapes *shapes, lao_v3 p,
     if (cell->w > 0.0f || sdv_is_within(cell->z, reach)) {
         tree = sdv_grid_distance(g, p, NULL);
     }
-    return sdv__solid_of(shapes, tree, p).distance;
+    return sdv__solid_of(shapes, tree, p, false).distance;
 }
 static sdv_watch sdv__dip(const sdv_grid *g, const sdv_shapes *shapes, const sdv_ray *ray,
                           sdv_watch w, float t) {
@@ -4334,8 +4391,8 @@ SDV_API float sdv_shadow(const sdv_grid *grid, const sdv_shapes *shapes, lao_v3 
         lao_v3 q = lao_v3_along(p, light, t);
         uint32_t cone;
         float d = sdv_grid_distance(grid, q, NULL), step = sdv__tree_bound(grid, q, &cone);
-        d = shapes ? sdv__solid_of(shapes, d, q).distance : d;
-        step = shapes ? sdv__solid_of(shapes, step, q).distance : step;
+        d = shapes ? sdv__solid_of(shapes, d, q, false).distance : d;
+        step = shapes ? sdv__solid_of(shapes, step, q, true).distance : step;
         lit = sdv_shadow_add(lit, d, t, hardness);
         lit = d < sdv_hit_distance(grid->cell) ? 0.0f : lit;
         t += lao_max(step, sdv_hit_distance(grid->cell));
@@ -5021,6 +5078,12 @@ static bool sdv__shape_fits(const sdv_shape *s, uint32_t field_count) {
         if (!(fabsf(v[i]) <= 1e9f && fabsf(w[i]) <= 1e9f)) {
             return false;
         }
+    }
+    if (s->kind == SDV_SHAPE_TREE) {
+        return s->operation != SDV_SUBTRACTION;
+    }
+    if (s->kind == SDV_SHAPE_ELLIPSOID) {
+        return s->b.x > 0.0f && s->b.y > 0.0f && s->b.z > 0.0f;
     }
     return s->kind != SDV_SHAPE_FIELD ||
            (s->a.w > 0.0f && s->b.x >= 2.0f && s->b.y >= 2.0f && s->b.z >= 2.0f && s->b.w >= 0.0f &&

@@ -20,7 +20,7 @@ float watched(sdv_box b, lao_v3 p, float reach) {
     if (cell.w > 0.0 || sdv_is_within(cell.z, reach)) {
         tree = sdv_tree_distance_at(cells, ids, cones, b, cell, p);
     }
-    return sdv_solid_add_all(shapes, fields, sdv_solid_start(tree), p).distance;
+    return sdv_solid_add_all(shapes, fields, sdv_solid_start(tree), p, false).distance;
 }
 sdv_watch dip(sdv_box b, lao_v3 origin, lao_v3 direction, sdv_watch w, float t, float reach) {
     sdv_dip d = sdv_dip_start(w, t);

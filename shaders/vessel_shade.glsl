@@ -30,15 +30,15 @@ LAO_OUT(0, vec4, out_color)
 
 #ifdef LAO_FRAGMENT
 /* What is known of the tree's distance at p, with shapes. */
-float combined(float d, lao_v3 p) {
+float combined(float d, lao_v3 p, bool bound) {
     if (lao_constant_variant != 0) {
-        return sdv_solid_add_all(shapes, fields, sdv_solid_start(d), p).distance;
+        return sdv_solid_add_all(shapes, fields, sdv_solid_start(d), p, bound).distance;
     }
     return d;
 }
 /* Signed distance at p, from the list of its cell. */
 float field_at(sdv_box b, lao_v3 p) {
-    return combined(sdv_tree_distance_at(cells, ids, cones, b, texelFetch(cells, sdv_cell_at(b, p)), p), p);
+    return combined(sdv_tree_distance_at(cells, ids, cones, b, texelFetch(cells, sdv_cell_at(b, p)), p), p, false);
 }
 
 /* Openness of p along its normal: sdv_openness; from within a vessel the room inside counts. */
@@ -71,9 +71,9 @@ float lit_at(sdv_box b, lao_v3 p) {
         lao_v3 q = lao_v3_along(p, light, t);
         vec4 cell = texelFetch(cells, sdv_cell_at(b, q));
         float tree = sdv_tree_distance_at(cells, ids, cones, b, cell, q);
-        float d = combined(tree, q);
+        float d = combined(tree, q, false);
         lit = d < least ? 0.0 : sdv_shadow_add(lit, d, t, hardness);
-        float bound = combined(sdv_tree_bound(tree, cell.w > 0.0, cell.z, sdv_box_distance(q, b), b.cell), q);
+        float bound = combined(sdv_tree_bound(tree, cell.w > 0.0, cell.z, sdv_box_distance(q, b), b.cell), q, true);
         t = t + lao_max(bound, least);
     }
     return lit;

@@ -285,6 +285,8 @@ static bool prepare(stage *s, const view_list *views) {
     ok = ok && cli_shot_make(s->trees[0].options, &s->trees[0].scene, &s->shot);
     if (ok && views->poses)
         s->shot.camera = views->poses[0];
+    for (uint32_t i = 0; ok && i < s->count; i++)
+        cli_tree_fit_period(&s->trees[i], &s->shot);
     return ok && cli_write_camera(options, &s->shot.camera) &&
            (!options->vessel.link || !options->out || draw_flats(s));
 }

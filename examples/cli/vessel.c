@@ -66,6 +66,17 @@ static const sdv_attribute *find_attribute(const sdv_tree *tree, const char *nam
     return NULL;
 }
 
+/* How near a node is, 0 .. 1; half at a tenth of the tree's size (L19 Fig. 12). */
+static float nearness(const cli_tree *tree, uint32_t node) {
+    const float(*bounds)[3] = tree->vessel.tree.info.bounds;
+    float size = 0;
+    for (int k = 0; k < 3; k++)
+        size = fmaxf(size, bounds[1][k] - bounds[0][k]);
+    float part =
+        1 + 0.41421356f * fmaxf(cli_node_distance(tree, node), 0) / fmaxf(0.1f * size, 1e-6f);
+    return 1 / (part * part);
+}
+
 /* One number per node to weigh by; *weights stays NULL without --layout-weight. */
 static bool find_weights(const cli_tree *tree, float **weights) {
     const char *name = tree->options->vessel.weight;
@@ -74,13 +85,18 @@ static bool find_weights(const cli_tree *tree, float **weights) {
         return true;
     const sdv_attribute *attribute = find_attribute(t, name);
     bool radius = !attribute && strcmp(name, "radius") == 0;
-    if (!attribute && !radius)
+    bool near = !attribute && strcmp(name, "near") == 0;
+    if (near && !tree->target)
+        return cli_fail("--layout-weight: near what? write --path or --target");
+    if (!attribute && !radius && !near)
         return cli_fail("%s: its nodes have no attribute '%s' for --layout-weight", tree->name,
                         name);
     *weights = cli_new(t->node_count, sizeof **weights);
     uint32_t step = attribute && attribute->components ? attribute->components : 1;
     for (uint32_t i = 0; *weights && i < t->node_count; i++)
-        (*weights)[i] = radius ? t->nodes[i].w : attribute->values[(size_t)i * step];
+        (*weights)[i] = radius ? t->nodes[i].w
+                        : near ? nearness(tree, i)
+                               : attribute->values[(size_t)i * step];
     return *weights != NULL;
 }
 
@@ -207,7 +223,7 @@ static bool make_points(cli_tree *tree, io_lines *lines) {
     for (uint32_t i = 0; i < 2 * shapes->count; i++) {
         const sdv_shape *s = &shapes->shapes[i / 2];
         const float *a = &s->a.x, *b = &s->b.x;
-        if (s->operation != SDV_UNION || s->kind == SDV_SHAPE_PLANE)
+        if (s->operation != SDV_UNION || s->kind == SDV_SHAPE_PLANE || s->kind == SDV_SHAPE_TREE)
             continue;
         for (int k = 0; k < 3; k++) {
             float half = s->kind == SDV_SHAPE_BALL ? s->a.w : b[k];
@@ -224,8 +240,7 @@ static bool make_points(cli_tree *tree, io_lines *lines) {
 enum { PERIOD_PIXELS = 9 };
 
 /* The module's settings: those given, those of the style, and what both want: texture coordinates
- * for ink and marks, in a period that can be seen; a dump wants them too, and every ray's nearest
- * miss. */
+ * for ink and marks; a dump wants them too, and every ray's nearest miss. */
 static void make_settings(const cli_tree *tree, sdv_settings *settings) {
     const cli_options *options = tree->options;
     const char *style = options->vessel.style;
@@ -246,13 +261,21 @@ static void make_settings(const cli_tree *tree, sdv_settings *settings) {
         imply("parameterization", 2, settings);
     if (settings->void_style > 0)
         imply("parameterization", 1, settings);
-    if (style || tree->risk > 0) {
-        double extent = 0, least = fmin(options->size[0], options->size[1]);
-        for (int k = 0; k < 3; k++)
-            extent = fmax(extent, (double)tree->grid.size[k] * (double)tree->grid.cell);
-        imply("ssp_period", (float)(fmin(fmax(PERIOD_PIXELS * extent / least, 1e-3), 1000)),
-              settings);
+}
+
+void cli_tree_fit_period(cli_tree *tree, const cli_shot *shot) {
+    const camera_pose *c = &shot->camera;
+    double apart = 0, height = c->ortho_height;
+    if (!tree->options->vessel.style && !(tree->risk > 0))
+        return; /* numbers that do not depend on the camera */
+    for (int k = 0; k < 3; k++) {
+        double to = (double)shot->sphere[k] + tree->scene.origin[k] - c->eye[k];
+        apart += to * to;
     }
+    if (c->fovy > 0)
+        height = 2 * fmax(sqrt(apart), (double)shot->sphere[3]) * tan(c->fovy * 0.00872664626);
+    imply("ssp_period", (float)fmin(fmax(PERIOD_PIXELS * height / shot->height, 1e-3), 1000),
+          &tree->settings);
 }
 
 /* The marker is plain: no void of its own, no ink. */

@@ -60,6 +60,8 @@ typedef struct cli_tree {
 bool cli_tree_load(const cli_options *options, uint32_t index, cli_tree *out);
 /* Then: field, colours, object and scene, for rendering. False: reported. */
 bool cli_tree_prepare(cli_tree *tree);
+/* Makes the period of ink and marks a number of pixels of the shot, unless it is given. */
+void cli_tree_fit_period(cli_tree *tree, const cli_shot *shot);
 void cli_tree_free(cli_tree *tree);
 
 /* Reads --subtract and its like into tree->carving. False: reported. */

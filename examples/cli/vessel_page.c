@@ -9,7 +9,7 @@
 #include <stdio.h>
 #include <string.h>
 
-enum { SMALLEST = 48 }; /* px: of a panel */
+enum { SMALLEST = 32 }; /* px: of a panel */
 
 static double text_size(const cli_options *options) {
     return fmin(fmax(0.028 * fmin(options->size[0], options->size[1]), 11), 80);

@@ -339,7 +339,7 @@ static bool file_shape(cli_tree *tree, cli_carving *carving, const char *path, u
 
 static bool wrong_shape(const char *text) {
     return cli_fail("%s: is no shape; write sphere:X,Y,Z,R, box:X,Y,Z,X,Y,Z (two corners), "
-                    "plane:NX,NY,NZ,D or a FILE",
+                    "plane:NX,NY,NZ,D, ellipsoid:X,Y,Z,A,B,C (half axes), tree or a FILE",
                     text);
 }
 
@@ -362,6 +362,16 @@ static bool parse_shape(cli_tree *tree, const char *text, sdv_shape *shape) {
             a[k] = (float)(0.5 * (v[k] + v[k + 3]) - o[k]);
             b[k] = (float)(0.5 * fabs(v[k + 3] - v[k]));
         }
+    } else if (strncmp(text, "ellipsoid:", 10) == 0) {
+        if (!cli_numbers(text + 10, v, 6) || !(v[3] > 0 && v[4] > 0 && v[5] > 0))
+            return wrong_shape(text);
+        shape->kind = SDV_SHAPE_ELLIPSOID;
+        for (int k = 0; k < 3; k++) {
+            (&shape->a.x)[k] = (float)(v[k] - o[k]);
+            (&shape->b.x)[k] = (float)v[k + 3];
+        }
+    } else if (strcmp(text, "tree") == 0) {
+        shape->kind = SDV_SHAPE_TREE;
     } else if (strncmp(text, "plane:", 6) == 0) {
         if (!cli_numbers(text + 6, v, 4))
             return wrong_shape(text);
@@ -386,6 +396,9 @@ bool cli_carving_make(cli_tree *tree) {
         if (!parse_shape(tree, o->shapes[i].text, shape))
             return false;
         shape->operation = (lao_int)o->shapes[i].operation;
+        if (shape->kind == SDV_SHAPE_TREE && shape->operation == SDV_SUBTRACTION)
+            return cli_fail("--subtract: tree is what the shapes are combined with; it is added "
+                            "again by --union tree");
     }
     shapes->shapes = tree->carving.list;
     shapes->count = o->shape_count;

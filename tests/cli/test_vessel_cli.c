@@ -90,6 +90,7 @@ static const double y_nodes[5][4] = {{0, 0, -1100, 2},
                                      {16, 24, -1096, 1}};
 static const int y_segments[4][2] = {{0, 1}, {1, 2}, {1, 3}, {3, 4}};
 #define Y "y.swc --unit mm --camera cam.json " SMALL
+#define BARE "--set parameterization=off " /* a dump's is on, and costs */
 
 /* Signed distance to one limb in double precision, by the least over its balls. */
 static double limb_distance(int limb, const double p[3]) {
@@ -182,7 +183,7 @@ static void test_cuts(void **state) {
     dump d;
     uint32_t cut = 0, left = 0;
     (void)state;
-    expect_ok(RUN("vessel " Y "--dump cut.exr --subtract plane:0,0,-1,1100"));
+    expect_ok(RUN("vessel " Y BARE "--dump cut.exr --subtract plane:0,0,-1,1100"));
     read_dump("cut.exr", &d); /* the half in front, z > -1100, goes */
     for (size_t i = 0; i < d.count; i++) {
         if (d.segment[i] == -1)
@@ -197,7 +198,7 @@ static void test_cuts(void **state) {
     }
     assert_in_range(cut, 200, left);
     image_exr_free(&d.image);
-    expect_ok(RUN("vessel " Y "--dump cut.exr --intersect sphere:0,10,-1100,5 --union "
+    expect_ok(RUN("vessel " Y BARE "--dump cut.exr --intersect sphere:0,10,-1100,5 --union "
                   "box:-9,-2,-1101,-5,2,-1099"));
     read_dump("cut.exr", &d);
     for (size_t i = 0; i < d.count; i++) {
@@ -217,8 +218,8 @@ static void test_cut_by_files(void **state) {
     write_file("box.obj", "v -20 5 -1110\nv 20 5 -1110\nv 20 30 -1110\nv -20 30 -1110\n"
                           "v -20 5 -1090\nv 20 5 -1090\nv 20 30 -1090\nv -20 30 -1090\n"
                           "f 4 3 2 1\nf 5 6 7 8\nf 1 2 6 5\nf 2 3 7 6\nf 3 4 8 7\nf 4 1 5 8\n");
-    expect_ok(RUN("vessel " Y "--dump box.exr --subtract box:-20,5,-1110,20,30,-1090"));
-    expect_ok(RUN("vessel " Y "--dump mesh.exr --subtract box.obj"));
+    expect_ok(RUN("vessel " Y BARE "--dump box.exr --subtract box:-20,5,-1110,20,30,-1090"));
+    expect_ok(RUN("vessel " Y BARE "--dump mesh.exr --subtract box.obj"));
     read_dump("box.exr", &box);
     read_dump("mesh.exr", &mesh);
     for (size_t i = 0; i < box.count; i++) {
@@ -229,7 +230,7 @@ static void test_cut_by_files(void **state) {
     assert_in_range(same, box.count - box.count / 200, box.count); /* sampled: the rim may differ */
     image_exr_free(&box.image);
     image_exr_free(&mesh.image);
-    expect_ok(RUN("vessel " Y "--dump tree.exr --subtract y.swc"));
+    expect_ok(RUN("vessel " Y BARE "--dump tree.exr --subtract y.swc"));
 }
 
 /* ---- numbers ---------------------------------------------------------------------------- */
@@ -314,11 +315,11 @@ static void test_cameras(void **state) {
     write_file("cams.json", "[{\"eye\":[4,12,-1040],\"center\":[4,12,-1100],\"up\":[0,1,0],"
                             "\"fovy\":32},{\"eye\":[60,12,-1100],\"center\":[0,12,-1100],"
                             "\"up\":[0,1,0],\"ortho_height\":40}]");
-    expect_ok(RUN("vessel y.swc --unit mm " SMALL "--cameras cams.json -o f_%%04d.png --dump "
+    expect_ok(RUN("vessel y.swc --unit mm " SMALL BARE "--cameras cams.json -o f_%%04d.png --dump "
                   "f_%%04d.exr --timings t.json --save-camera used.json"));
     assert_true(exists("f_0000.png") && exists("f_0001.png") && exists("f_0001.exr"));
     assert_false(exists("f_0002.png"));
-    expect_ok(RUN("vessel " Y "--dump one.exr"));
+    expect_ok(RUN("vessel " Y BARE "--dump one.exr"));
     read_dump("one.exr", &one);
     read_dump("f_0000.exr", &all);
     assert_memory_equal(one.segment, all.segment, 4 * one.count);
@@ -531,7 +532,7 @@ static void test_faults(void **state) {
         {"vessel y.swc --risk 5 -o a.png", "--target", 2},
         {"vessel y.swc --path 0,0,0:1,1,1 --path 0,0,0:2,2,2 -o a.png", "--link", 2},
         {"vessel y.swc --shape-color nearest -o a.png", "shape", 2},
-        {"vessel y.swc --link --size 90x60 -o a.png", "--size", 1},
+        {"vessel y.swc --link --size 60x40 -o a.png", "--size", 1},
         {"vessel y.swc --set silhouete=1 -o a.png", "silhouette", 2},
         {"vessel y.swc --style wild -o a.png", "--style", 2},
         {"vessel none.swc -o a.png", "none.swc", 1},

@@ -88,6 +88,25 @@ static void shapes_have_distances(void **state) {
         assert_near(length(g), 1, 1e-6);
         assert_near(sdv_shape_distance(q, *s) - sdv_shape_distance(p, *s), 1e-3, 1e-4);
     }
+    sdv_shape egg = shape(SDV_SHAPE_ELLIPSOID, 0, v4(1, 2, 3, 0), v4(4, 2, 3, 0));
+    for (int i = 0; i < 300; i++) { /* a bound of the least distance to places of the surface */
+        lao_v3 p = vessel_point(&seed, 7), e = sdv_ellipsoid_place(p, egg);
+        double least = INFINITY, sign = length(e) < 1 ? -1 : 1;
+        for (int k = 0; k < 20000; k++) {
+            lao_v3 u = vessel_direction(&seed);
+            lao_v3 q = v3(1 + 4 * (double)u.x, 2 + 2 * (double)u.y, 3 + 3 * (double)u.z);
+            least = fmin(least, length(lao_v3_sub(p, q)));
+        }
+        double d = (double)sdv_shape_distance(p, egg);
+        assert_true(sign * d >= 0 && fabs(d) <= least + 1e-5);
+        assert_true(fabs((double)sdv_shape_estimate(p, egg) - sign * least) <
+                    0.05 + (sign > 0 ? 0.35 : 1) * least);
+        lao_v3 on = lao_v3_along(v3(1, 2, 3), lao_v3_sub(p, v3(1, 2, 3)), 1 / (float)length(e));
+        lao_v3 g = sdv_shape_gradient(on, egg);
+        lao_v3 above = lao_v3_along(on, g, 1e-2f);
+        assert_near(sdv_shape_distance(on, egg), 0, 1e-5);
+        assert_near(sdv_shape_estimate(above, egg), 1e-2, 3e-4);
+    }
     lao_v3 zero = sdv_shape_gradient(v3(1, 2, 3), ball),
            middle = sdv_shape_gradient(v3(1, 2, 3), box);
     assert_near(length(zero), 1, 1e-6);
@@ -233,6 +252,35 @@ static void near_misses_of_shapes(void **state) {
         sdv_trace_shapes(&g, &shapes, &ray, &hit, NULL);
         assert_true(hit.d_min == SDV_FAR);
     }
+    sdv_grid_free(&g);
+    sdv_tree_free(&t);
+}
+
+/* An organ around the tree, cut open, with the tree in it again: L19 Fig. 11. */
+static void tree_in_a_cut(void **state) {
+    (void)state;
+    const float p[] = {-20, 0, 0, 20, 0, 0}, r[] = {2, 2};
+    const sdv_segment s[] = {{0, 1}};
+    sdv_tree t = tree_of(2, p, r, 1, s);
+    sdv_grid g = grid_of(&t, 64);
+    const sdv_shape list[3] = {
+        shape(SDV_SHAPE_BALL, SDV_UNION, v4(0, 0, 0, 30), v4(0, 0, 0, 0)),
+        shape(SDV_SHAPE_BALL, SDV_SUBTRACTION, v4(0, 0, 20, 20), v4(0, 0, 0, 0)),
+        shape(SDV_SHAPE_TREE, SDV_UNION, v4(0, 0, 0, 0), v4(0, 0, 0, 0))};
+    sdv_shapes shapes = {list, 2, NULL, 0};
+    sdv_ray ray = {v3(1, 0, 60), v3(0, 0, -1), 0, 0};
+    sdv_hit hit;
+    sdv_trace_shapes(&g, &shapes, &ray, &hit, NULL); /* the cut took half of the vessel */
+    assert_int_equal(hit.cone, SDV_CUT_CONE);
+    assert_near(hit.position.z, 20 - sqrt(399), 2e-3);
+    shapes.count = 3;
+    sdv_trace_shapes(&g, &shapes, &ray, &hit, NULL);
+    assert_int_equal(hit.cone, 0);
+    assert_near(hit.position.z, 2, 2e-3);
+    ray.origin = v3(25, 0, 60); /* beside the cut: the organ */
+    sdv_trace_shapes(&g, &shapes, &ray, &hit, NULL);
+    assert_int_equal(hit.cone, SDV_CUT_CONE);
+    assert_near(hit.position.z, sqrt(900 - 625), 2e-3);
     sdv_grid_free(&g);
     sdv_tree_free(&t);
 }
@@ -506,6 +554,7 @@ int main(void) {
         cmocka_unit_test(carving_opens_vessels),
         cmocka_unit_test(near_misses_of_shapes),
         cmocka_unit_test(shapes_cast_shadows),
+        cmocka_unit_test(tree_in_a_cut),
         cmocka_unit_test(light_and_openness),
         cmocka_unit_test(pieces_are_exact),
         cmocka_unit_test(targets_equal_brute_force),

@@ -253,7 +253,7 @@ static void from_within(void **state) {
 }
 
 /* The tree combined with a shape of every kind, field included, by all operations. */
-enum { SAMPLES = 5, SHAPES = 4 };
+enum { SAMPLES = 5, SHAPES = 6 };
 typedef struct carving {
     sdv_shape list[SHAPES];
     float samples[SAMPLES * SAMPLES * SAMPLES];
@@ -266,6 +266,8 @@ static void carving_make(carving *c, uint32_t count) {
         {{0, 0, 0, 0}, {12, 9, 14, 0}, SDV_SHAPE_BOX, SDV_INTERSECTION},
         {{-8, -8, -8, 4}, {SAMPLES, SAMPLES, SAMPLES, 0}, SDV_SHAPE_FIELD, SDV_UNION},
         {{0.6f, 0, 0.8f, 3}, {0, 0, 0, 0}, SDV_SHAPE_PLANE, SDV_INTERSECTION},
+        {{0, 0, 0, 0}, {0, 0, 0, 0}, SDV_SHAPE_TREE, SDV_UNION},
+        {{4, 2, 1, 0}, {5, 3, 4, 0}, SDV_SHAPE_ELLIPSOID, SDV_UNION},
     };
     memset(c, 0, sizeof *c);
     memcpy(c->list, list, sizeof list);
@@ -325,7 +327,8 @@ static void with_shapes(void **state) {
         scene_make(&s, &tree);
         carving_make(&c, count);
         s.vessel.near_miss = (float)(count % 3);
-        const float colors[3 * SHAPES] = {-1, 0, 0, 0.9f, 0.5f, 0.1f, -1, 0, 0, 0, 1, 0};
+        const float colors[3 * SHAPES] = {-1, 0, 0, 0.9f, 0.5f, 0.1f, -1, 0, 0,
+                                          0,  1, 0, 0,    0,    0,    -1, 0, 0};
         assert_int_equal(sdv_object_shapes(NULL, &c.shapes, colors, &tree.object), LAO_OK);
         s.vessel.field_shadow = count > 2 ? 1.0f : 0.0f;
         for (int i = 0; i < 2; i++) {
