@@ -139,7 +139,7 @@ static bool write_page(const char *path, stage *s) {
     ok = ok && (picture_make(s->options->size[0], s->options->size[1], &whole) ||
                 cli_fail("out of memory"));
     if (ok) {
-        ok = cli_page_draw(&s->page, s->trees, solids, s->flats, &whole) &&
+        ok = cli_page_draw(&s->page, s->trees, &s->shot, solids, s->flats, &whole) &&
              write_pixels(path, s->video, &whole, opaque);
         picture_free(&whole);
     }
@@ -352,6 +352,7 @@ static void add_target(const cli_tree *tree, cJSON *list) {
         cJSON_AddItemToObject(item, "distance", cli_json_float(tree->cone_distances[i]));
         cJSON_AddItemToArray(segments, item);
     }
+    uint32_t nearest[CLI_NUMBERED], numbered = cli_nearest_branches(tree, nearest);
     cJSON *branches = cJSON_AddArrayToObject(target, "branches");
     for (uint32_t i = 0; i < tree->reduced.node_count; i++) {
         if (!(tree->distances[i] < risk))
@@ -359,6 +360,10 @@ static void add_target(const cli_tree *tree, cJSON *list) {
         cJSON *item = cJSON_CreateObject();
         cJSON_AddNumberToObject(item, "id", tree->reduced.ids[i]);
         cJSON_AddItemToObject(item, "distance", cli_json_float(tree->distances[i]));
+        for (uint32_t k = 0; k < numbered; k++) {
+            if (nearest[k] == i)
+                cJSON_AddNumberToObject(item, "number", k + 1);
+        }
         cJSON_AddItemToArray(branches, item);
     }
 }

@@ -81,5 +81,7 @@ bool cli_tree_legend(const cli_tree *tree, const char *side, picture *p);
 /* The 2D layout as a picture, in the colours of the tree; with a target on the distances between
  * (L19 5, Fig. 10). False: reported. */
 bool cli_flat_draw(const cli_tree *tree, picture *p);
+/* Where the edge of a branch (reduced node) has its middle in such a picture, px. */
+void cli_flat_place(const cli_tree *tree, const uint32_t size[2], uint32_t branch, double out[2]);
 
 #endif

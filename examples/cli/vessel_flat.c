@@ -313,14 +313,28 @@ static bool draw(flat *f, picture *p) {
     return ok;
 }
 
-bool cli_flat_draw(const cli_tree *tree, picture *p) {
+static flat begin(const cli_tree *tree, uint32_t width, uint32_t height) {
     flat f;
     memset(&f, 0, sizeof f);
     f.tree = tree;
-    f.width = p->width;
-    f.height = p->height;
-    f.unit = fmin(p->width, p->height) / 200.0;
-    f.thin = fmin(0.5 * f.unit, fmax(0.35 * p->width / tree->layout.node_count, 0.2 * f.unit));
+    f.width = width;
+    f.height = height;
+    f.unit = fmin(width, height) / 200.0;
+    f.thin = fmin(0.5 * f.unit, fmax(0.35 * width / tree->layout.node_count, 0.2 * f.unit));
+    return f;
+}
+
+void cli_flat_place(const cli_tree *tree, const uint32_t size[2], uint32_t branch, double out[2]) {
+    const flat f = begin(tree, size[0], size[1]);
+    double top[2];
+    place_of(&f, branch, out);
+    place_of(&f, tree->reduced.parents[branch], top);
+    for (int k = 0; k < 2; k++)
+        out[k] = 0.5 * (out[k] + top[k]);
+}
+
+bool cli_flat_draw(const cli_tree *tree, picture *p) {
+    flat f = begin(tree, p->width, p->height);
     bool ok = make(&f) && draw(&f, p);
     free(f.tones);
     free(f.apart);

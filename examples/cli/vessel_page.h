@@ -16,9 +16,13 @@ typedef struct cli_page {
 bool cli_page_make(const cli_options *options, bool scaled, cli_page *out);
 
 /* Draws all panels (one of each kind for each tree) into a transparent picture of the options'
- * size. False: reported. */
-bool cli_page_draw(const cli_page *page, const cli_tree *trees, const picture *solids,
-                   const picture *flats, picture *p);
+ * size, with numbers at the nearest branches. False: reported. */
+bool cli_page_draw(const cli_page *page, const cli_tree *trees, const cli_shot *shot,
+                   const picture *solids, const picture *flats, picture *p);
+
+/* The branches at risk (reduced nodes), nearest first, CLI_NUMBERED at most; returns how many. */
+enum { CLI_NUMBERED = 9 };
+uint32_t cli_nearest_branches(const cli_tree *tree, uint32_t list[CLI_NUMBERED]);
 
 /* Branches (reduced nodes) that come nearer than the risk; *least: the least distance, mm. */
 uint32_t cli_tree_at_risk(const cli_tree *tree, float *least);
