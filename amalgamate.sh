@@ -4,7 +4,7 @@
 #   ./amalgamate.sh            write both
 #   ./amalgamate.sh --check    prove that the committed lineao_shaders.h is current and that dist/ compiles
 # Needs cc, awk, od, glslangValidator, spirv-opt.
-# shellcheck disable=SC2086 # lists are split into words on purpose
+# shellcheck disable=SC2046,SC2086 # lists are split into words on purpose
 set -eu
 LC_ALL=C
 export LC_ALL
@@ -18,6 +18,20 @@ vessel_header="sdfvessel.h"
 surface_shaders="surface_measure surface_mesh surface_nearest surface_layers surface_shadow surface_effect surface_focus surface_blur"
 surface_header="vesselsurface.h"
 lines_header="" # lineao.h's text stands in front of all
+shaders_of() {
+    case $1 in
+        lines) echo "$lines_shaders" ;;
+        vessel) echo "$vessel_shaders" ;;
+        surface) echo "$surface_shaders" ;;
+    esac
+}
+header_of() {
+    case $1 in
+        lines) echo "$lines_header" ;;
+        vessel) echo "$vessel_header" ;;
+        surface) echo "$surface_header" ;;
+    esac
+}
 
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT INT TERM
@@ -139,9 +153,8 @@ make_shaders_header() {
     : >"$work/rows"
     { make_shared lineao.h; strip <shaders/prologue.glsl; } >"$work/prologue"
     for module in $MODULES; do
-        eval "header=\$${module}_header"
         {
-            make_shared $header
+            make_shared $(header_of "$module")
             "$work/shader_text" settings "$module"
             [ ! -e "shaders/$module.glsl" ] || [ "$module" = lines ] || strip <"shaders/$module.glsl"
         } >"$work/$module.prologue"
@@ -181,8 +194,7 @@ END
     done
     printf '#endif\n'
     for module in $MODULES; do
-        eval "shaders=\$${module}_shaders"
-        for shader in $shaders; do
+        for shader in $(shaders_of "$module"); do
             make_shader "$shader"
         done
     done

@@ -121,6 +121,7 @@ static const flag_row flags[] = {
     {"--frames", NULL, "N", FLAG_COUNT, CLI_RENDER, ALL(frames), NULL, "a sequence of pictures or a video over one period, or from the first time to the last"},
     {"--fps", NULL, "N", FLAG_COUNT, SHOT, ALL(fps), NULL, "frames per second of a video (25)"},
     {"--backdrop", NULL, NULL, FLAG_SWITCH, CLI_RENDER, ALL(backdrop), NULL, "of velocity volumes and the scene flow: the highest speeds of the beat behind the lines, the vessel's outline around"},
+    {"--shared-occlusion", NULL, NULL, FLAG_SWITCH, DRAWN, ALL(shared_occlusion), NULL, "FILEs occlude each other, not only themselves; settings from occlusion to shading are then the first FILE's"},
     {"--legend", NULL, "SIDE", FLAG_CHOICE, CLI_RENDER | CLI_VESSEL, ALL(legend), "off|left|right|bottom", "scale of the attribute's colours in the picture: off, left, right or bottom (off)"},
     {"--legend-title", NULL, "TEXT", FLAG_TEXT, CLI_RENDER | CLI_VESSEL, ALL(legend_title), NULL, "above the scale (the attribute's name, and its unit if known)"},
     {"--dump", NULL, "FILE.exr", FLAG_TEXT, SHOT, ALL(dump), NULL, "every image of the frame graph as 32-bit floats (OpenEXR)"},
@@ -750,7 +751,7 @@ void cli_print_flags(cli_command_bit command) {
                command == CLI_SURFACE
                    ? "Of the MESH and of the lines"
                    : "Of a FILE: before the first FILE for all FILEs, after a FILE for it alone");
-    if (command & (DRAWN | CLI_RENDER))
+    if (command & DRAWN)
         printf("\nSettings%s (default in parentheses)\n",
                command & (CLI_VESSEL | CLI_SURFACE) ? "" : ", for all FILEs or for one");
     for (int m = 0; m < MODULES; m++) { /* of those for lines few do anything to vessels */

@@ -117,7 +117,7 @@ typedef struct cli_options {
     uint32_t size[2];
     double time; /* ms; NaN: not given */
     double background[4];
-    bool ortho, json, backdrop, help;
+    bool ortho, json, backdrop, shared_occlusion, help;
     cli_flow_options flow;
     cli_vessel_options vessel;
     cli_surface_options surface;

@@ -175,7 +175,9 @@ static bool render_all(surroundings *around, cli_session *session, cli_shot *sho
                         options->fps ? options->fps : 25))
         return false;
     around->video = &video;
-    return cli_video_close(&video, render_frames(around, session, shot));
+    bool ok = cli_video_close(&video, render_frames(around, session, shot));
+    around->video = NULL;
+    return ok;
 }
 
 static bool write_json(const cli_options *options, cli_session *session, const cli_shot *shot) {

@@ -199,7 +199,7 @@ bool cli_session_render(cli_session *session, const cli_shot *shot, uint32_t fra
     frame.camera.flags = LAO_CAMERA_ZERO_TO_ONE;
     frame.sets = session->sets;
     frame.set_count = session->set_count;
-    frame.flags = frame_flags;
+    frame.flags = shot->frame_flags | frame_flags;
     memcpy(frame.background, shot->background, sizeof frame.background);
     memcpy(frame.sphere, shot->sphere, sizeof frame.sphere);
     frame.time = shot->time;

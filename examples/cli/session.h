@@ -10,6 +10,7 @@ typedef struct cli_shot {
     camera_pose camera; /* mm, absolute */
     float view[16], projection[16], sphere[4], background[4], time;
     uint32_t width, height;
+    uint32_t frame_flags; /* LAO_FRAME_... of every frame */
 } cli_shot;
 
 /* The camera of the options, or one that fits the scene. False: reported. */
@@ -36,7 +37,8 @@ bool cli_session_open(cli_session *session, const char *backend, const cli_scene
                       const cli_shot *shot, uint32_t view_flags);
 void cli_session_close(cli_session *session);
 
-/* Draws one frame and waits for it. frame_flags: LAO_FRAME_... False: reported. */
+/* Draws one frame and waits for it. frame_flags: LAO_FRAME_... besides those of the shot. False:
+ * reported. */
 bool cli_session_render(cli_session *session, const cli_shot *shot, uint32_t frame_flags);
 
 /* The name of the device that draws. */

@@ -70,6 +70,7 @@ bool cli_shot_make(const cli_options *options, const cli_scene *scene, cli_shot 
     out->time = (float)(!isnan(options->time) ? options->time
                         : options->frames     ? scene->beat[0]
                                               : 0);
+    out->frame_flags = options->shared_occlusion ? LAO_FRAME_SHARED_OCCLUSION : 0;
     for (int k = 0; k < 4; k++)
         out->background[k] = (float)options->background[k];
     find_sphere(scene, out->sphere);
