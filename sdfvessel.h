@@ -415,6 +415,12 @@ SDV_API float sdv_shadow(const sdv_grid *grid, const sdv_shapes *shapes, lao_v3 
 SDV_API float sdv_openness(const sdv_grid *grid, lao_v3 p, lao_v3 normal, float reach,
                            uint32_t inside);
 
+/* Normal for shading at a place of the surface of `cone`: where segments meet, their normals go
+   over into each other within `smoothness` of the radius, so that a chain of short segments has no
+   rings. normal: the surface's own. Thread: any. */
+SDV_API lao_v3 sdv_smooth_normal(const sdv_grid *grid, lao_v3 p, uint32_t cone, lao_v3 normal,
+                                 float smoothness);
+
 /* What distances are measured to: a ball, a path, a surface. */
 typedef struct sdv_target_desc {
     uint32_t point_count;
@@ -481,6 +487,9 @@ SDV_API lao_result sdv_pull_push(const sdv_host *host, const sdv_pull_push_desc 
     X(occlusion_reach, FLOAT, 0.01f, 100, 4, 0, "%", "",                                           \
       "how far field occlusion looks, of the scene's diameter")                                    \
     X(occlusion_strength, FLOAT, 0, 5, 0.75f, 0, "", "", "light that field occlusion takes away")  \
+    X(joint_smoothness, FLOAT, 0, 1, 0.35f, 0, "", "",                                             \
+      "how far light at a joint goes over from one segment to the next, of the radius; 0: "        \
+      "creases")                                                                                   \
     X(surface_ambient, FLOAT, 0, 1, 0.25f, 0, "", "", "ambient part of a surface's illumination")  \
     X(surface_diffuse, FLOAT, 0, 2, 0.7f, 0, "", "", "diffuse part of a surface's illumination")   \
     X(surface_specular, FLOAT, 0, 2, 0.2f, 0, "", "", "specular part of a surface's illumination") \
@@ -1498,6 +1507,31 @@ LAO_FN lao_v3 sdv_cone_color(lao_v3 p, lao_v4 a, lao_v4 b, lao_v3 color_a, lao_v
 LAO_FN bool sdv_is_marked(lao_v3 p, lao_v4 a, lao_v4 b, float alpha_a, float alpha_b) {
     LAO_EXACT float alpha = alpha_a + sdv_cone_place(p, a, b) * (alpha_b - alpha_a);
     return alpha < 0.5f;
+}
+/* How near to a place of the surface another cone takes part in its shading normal, mm: within what
+   the cell's list is sure to hold. a, b: of the cone at p. */
+LAO_FN float sdv_joint_reach(lao_v3 p, lao_v4 a, lao_v4 b, float smoothness, float cell) {
+    sdv_cone_point c = sdv_cone_point_make(p, a, b);
+    LAO_EXACT float reach = smoothness * (a.w + c.place * (b.w - a.w));
+    return lao_min(reach, sdv_near_reach(cell));
+}
+/* Adds a cone's gradient to those before, the less the farther its surface is. */
+LAO_FN lao_v3 sdv_joint_add(lao_v3 sum, lao_v3 p, lao_v4 a, lao_v4 b, float reach) {
+    sdv_cone_point c = sdv_cone_point_make(p, a, b);
+    if (!(c.distance < reach)) {
+        return sum;
+    }
+    LAO_EXACT float part = 1.0f - lao_max(c.distance, 0.0f) / reach;
+    LAO_EXACT float weight = part * part;
+    return lao_v3_along(sum, sdv_round_cone_gradient(p, a, b), weight);
+}
+/* The mean of the gradients on the side of the surface's own normal, unit. */
+LAO_FN lao_v3 sdv_joint_normal(lao_v3 sum, lao_v3 normal) {
+    lao_v3 n = lao_v3_unit(sum, normal);
+    if (lao_v3_dot(n, normal) < 0.0f) {
+        return lao_v3_scale(n, -1.0f);
+    }
+    return n;
 }
 /* Light after something dark, 0 .. 1, of that strength. */
 LAO_FN float sdv_dimmed(float light, float dark, float strength) {
@@ -4398,6 +4432,18 @@ SDV_API float sdv_shadow(const sdv_grid *grid, const sdv_shapes *shapes, lao_v3 
         t += lao_max(step, sdv_hit_distance(grid->cell));
     }
     return lit;
+}
+SDV_API lao_v3 sdv_smooth_normal(const sdv_grid *grid, lao_v3 p, uint32_t cone, lao_v3 normal,
+                                 float smoothness) {
+    const lao_v4 *cell = sdv__cell_at(grid, p), *own = grid->cones + 2 * (size_t)cone;
+    float reach = sdv_joint_reach(p, own[0], own[1], smoothness, grid->cell);
+    lao_v3 sum = lao_v3_make(0.0f, 0.0f, 0.0f);
+    uint32_t i;
+    for (i = 0; reach > 0.0f && i < (uint32_t)cell->w; i++) {
+        const lao_v4 *ends = grid->cones + 2 * (size_t)grid->ids[(size_t)cell->z + i];
+        sum = sdv_joint_add(sum, p, ends[0], ends[1], reach);
+    }
+    return sdv_joint_normal(sum, normal);
 }
 SDV_API float sdv_openness(const sdv_grid *grid, lao_v3 p, lao_v3 normal, float reach,
                            uint32_t inside) {

@@ -53,6 +53,19 @@ float openness(sdv_box b, lao_v3 p, lao_v3 n, bool inside) {
     return sdv_open_result(closed);
 }
 
+/* Normal for shading: sdv_smooth_normal. */
+lao_v3 smooth_normal(sdv_box b, lao_v3 p, float cone, lao_v3 n) {
+    int own = 2 * int(cone);
+    float reach = sdv_joint_reach(p, texelFetch(cones, own), texelFetch(cones, own + 1), lao_setting_joint_smoothness, b.cell);
+    vec4 cell = texelFetch(cells, sdv_cell_at(b, p));
+    int count = reach > 0.0 ? int(cell.w) : 0;
+    lao_v3 sum = lao_v3_make(0.0, 0.0, 0.0);
+    for (int i = 0; i < count; i++) {
+        int at = 2 * int(texelFetch(ids, int(cell.z) + i).x);
+        sum = sdv_joint_add(sum, p, texelFetch(cones, at), texelFetch(cones, at + 1), reach);
+    }
+    return sdv_joint_normal(sum, n);
+}
 /* Light that reaches p past the vessels: sdv_shadow. */
 float lit_at(sdv_box b, lao_v3 p) {
     lao_v3 light = sdv_shadow_light(lao_frame.world, lao_setting_shadow_light_x, lao_setting_shadow_light_y);
@@ -217,9 +230,13 @@ void main() {
         color = sdv_cone_color(p, texelFetch(cones, at), texelFetch(cones, at + 1), texelFetch(colors, at).xyz,
                                texelFetch(colors, at + 1).xyz);
     }
+    lao_v3 facing = n.xyz;
+    if (hit.w >= 0.0) {
+        facing = smooth_normal(sdv_box_fetch(box), p, hit.w, n.xyz);
+    }
     LAO_EXACT float light = 1.0;
     if (lao_constant_field_occlusion != 0) {
-        light = sdv_dimmed(light, 1.0 - openness(sdv_box_fetch(box), p, n.xyz, inside), lao_setting_occlusion_strength);
+        light = sdv_dimmed(light, 1.0 - openness(sdv_box_fetch(box), p, facing, inside), lao_setting_occlusion_strength);
     }
     if (lao_constant_field_shadow != 0) {
         light = sdv_dimmed(light, 1.0 - lit_at(sdv_box_fetch(box), p), lao_setting_field_shadow_strength);
@@ -244,13 +261,13 @@ void main() {
     }
     lao_v3 towards = lao_v3_scale(direction, -1.0);
     if (inked && lao_constant_style != SDV_STYLE_SHADOW) {
-        float tone = sdv_style_tone(lao_v3_dot(n.xyz, towards), lao_setting_surface_ambient, lao_setting_surface_diffuse,
+        float tone = sdv_style_tone(lao_v3_dot(facing, towards), lao_setting_surface_ambient, lao_setting_surface_diffuse,
                                     light);
         LAO_EXACT float paper = white * (1.0 - ink(pixel, lao_constant_style, n.xyz, p, direction, 1.0 - tone));
         out_color = vec4(lao_v3_scale(color, paper), 1.0);
         return;
     }
-    lao_v3 shade = sdv_shade(color, n.xyz, towards, lao_setting_surface_ambient, lao_setting_surface_diffuse,
+    lao_v3 shade = sdv_shade(color, facing, towards, lao_setting_surface_ambient, lao_setting_surface_diffuse,
                              lao_setting_surface_specular, lao_constant_surface_shininess, light);
     out_color = vec4(lao_v3_scale(shade, white), 1.0);
 }

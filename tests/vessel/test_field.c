@@ -285,6 +285,45 @@ static void tree_in_a_cut(void **state) {
     sdv_tree_free(&t);
 }
 
+/* Along a chain of short segments whose radii alternate, exact normals jump at every joint; those
+   for shading turn slowly. Where a segment is alone both are the same. */
+static void smooth_normals(void **state) {
+    (void)state;
+    enum { CHAIN = 60 };
+    float p[3 * CHAIN] = {0}, r[CHAIN];
+    sdv_segment s[CHAIN];
+    for (uint32_t i = 0; i < CHAIN; i++) {
+        p[3 * i] = i + 1 < CHAIN ? 0.4f * (float)i : 60.0f; /* the last one is long */
+        r[i] = 3.0f + (i % 2 && i + 2 < CHAIN ? 0.05f : 0.0f);
+        s[i] = (sdv_segment){i, i + 1};
+    }
+    sdv_tree t = tree_of(CHAIN, p, r, CHAIN - 1, s);
+    sdv_grid g = grid_of(&t, 64);
+    double jump[2] = {0, 0};
+    lao_v3 before[2] = {{0, 0, 1}, {0, 0, 1}};
+    for (double x = 4; x < 20; x += 0.02) {
+        sdv_ray ray = {v3(x, 0, 20), v3(0, 0, -1), 0, 0};
+        sdv_hit hit;
+        sdv_trace(&g, &ray, &hit);
+        lao_v3 n[2] = {hit.normal,
+                       sdv_smooth_normal(&g, hit.position, hit.cone, hit.normal, 0.35f)};
+        for (int k = 0; k < 2 && x > 4.1; k++)
+            jump[k] = fmax(jump[k], length(lao_v3_sub(n[k], before[k])));
+        memcpy(before, n, sizeof n);
+        assert_near(length(n[1]), 1, 1e-6);
+        lao_v3 same = sdv_smooth_normal(&g, hit.position, hit.cone, hit.normal, 0);
+        assert_memory_equal(&same, &hit.normal, sizeof same);
+    }
+    assert_true(jump[0] > 0.1 && jump[1] < 0.1 * jump[0]);
+    sdv_ray ray = {v3(45, 0.5, 20), v3(0, 0, -1), 0, 0};
+    sdv_hit hit;
+    sdv_trace(&g, &ray, &hit);
+    lao_v3 alone = sdv_smooth_normal(&g, hit.position, hit.cone, hit.normal, 0.35f);
+    assert_near(length(lao_v3_sub(alone, hit.normal)), 0, 1e-6);
+    sdv_grid_free(&g);
+    sdv_tree_free(&t);
+}
+
 /* What a cut has taken away casts no shadow, what is added does. */
 static void shapes_cast_shadows(void **state) {
     (void)state;
@@ -555,6 +594,7 @@ int main(void) {
         cmocka_unit_test(near_misses_of_shapes),
         cmocka_unit_test(shapes_cast_shadows),
         cmocka_unit_test(tree_in_a_cut),
+        cmocka_unit_test(smooth_normals),
         cmocka_unit_test(light_and_openness),
         cmocka_unit_test(pieces_are_exact),
         cmocka_unit_test(targets_equal_brute_force),

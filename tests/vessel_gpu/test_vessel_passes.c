@@ -130,6 +130,8 @@ static bool shade_of(const subject *tree, const float *v, const lao_frame_unifor
         return true;
     if (missed)
         return false;
+    normal = sdv_smooth_normal(&tree->grid, p, (uint32_t)hit.w, normal,
+                               v[SDV_SETTING_ID_joint_smoothness]);
     if (v[SDV_SETTING_ID_field_occlusion] > 0)
         light = sdv_dimmed(light,
                            1.0f - sdv_openness(&tree->grid, p, normal,
@@ -220,6 +222,8 @@ static void perspective(void **state) {
     s.vessel.near_miss = SDV_NEAR_MISS_NONE;
     check(&s, &tree, 300);
     s.vessel.field_shadow = 1;
+    s.vessel.joint_smoothness = 0;
+    s.vessel.set |= SDV_SET(joint_smoothness);
     check(&s, &tree, 300);
     subject_free(&tree);
 }
