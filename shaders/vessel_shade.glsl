@@ -22,14 +22,21 @@ LAO_CONSTANT(4, lao_constant_style)
 LAO_CONSTANT(5, lao_constant_void_style)
 LAO_CONSTANT(6, lao_constant_variant) /* 1: with shapes; 2: not a tree */
 LAO_CONSTANT(7, lao_constant_supersampling)
+LAO_CONSTANT(8, lao_constant_field_shadow)
 
 LAO_OUT(0, vec4, out_color)
 
 #ifdef LAO_FRAGMENT
+LAO_INCLUDE vessel_light.glsl
+/* White that ink leaves of the pixel. */
+float white_at(ivec2 pixel) {
+    return lao_constant_parameterization > 1 ? texelFetch(ink, pixel, 0).x : 1.0;
+}
 /* The void: depth as colour with lines, or ink. */
 vec4 void_color(ivec2 pixel, lao_v3 direction) {
     lao_v3 p = texelFetch(surface, pixel, 0).xyz;
     lao_v3 n = texelFetch(bgnormal, pixel, 0).xyz;
+    float white = white_at(pixel);
     if (lao_constant_void_style == SDV_VOID_CHROMADEPTH) {
         float facing = -lao_v3_dot(n, direction);
         LAO_EXACT float depth = (sdv_depth_of(lao_frame.view, p) - lao_frame.depth.x) * lao_frame.depth.y;
@@ -42,9 +49,8 @@ vec4 void_color(ivec2 pixel, lao_v3 direction) {
             LAO_EXACT float line = sdv_lines_ink(place, lao_min(1.5 * wide, 0.5), wide);
             light = sdv_dimmed(light, line, 0.7);
         }
-        return vec4(lao_v3_scale(sdv_chromadepth(depth), light), 1.0);
+        return vec4(lao_v3_scale(sdv_chromadepth(depth), light * white), 1.0);
     }
-    float white = texelFetch(ink, pixel, 0).x;
     return vec4(white, white, white, 1.0);
 }
 bool has_void() {
@@ -95,11 +101,15 @@ void main() {
         }
     }
     if (missed && !outlined) {
-        if (!has_void()) {
+        LAO_EXACT float mark = 1.0 - white_at(pixel);
+        if (!has_void() && !(mark > 0.0)) {
             discard;
         }
         gl_FragDepth = lao_frame.scale.z > 0.5 ? 1.0e-7 : 0.9999999; /* before nothing but the empty depth buffer */
-        out_color = void_color(pixel, direction);
+        out_color = vec4(0.0, 0.0, 0.0, mark);
+        if (has_void()) {
+            out_color = void_color(pixel, direction);
+        }
         return;
     }
     lao_v3 p = outlined && lao_constant_variant != 2 ? lao_v3_along(origin, direction, r.y) : hit.xyz;
@@ -109,32 +119,36 @@ void main() {
         out_color = vec4(0.0, 0.0, 0.0, 1.0);
         return;
     }
+    float cone = hit.w;
     lao_v3 color;
+    if (lao_constant_variant == 1 && hit.w < 0.0) { /* r.w: 2 * shape, + 1 inside */
+        vec4 own = texelFetch(shapes, 4 + 4 * int(0.5 * r.w));
+        color = own.xyz;
+        if (own.w < 0.5) { /* that of the nearest vessel */
+            sdv_box b = sdv_box_fetch(box);
+            cone = sdv_near_at(cells, ids, cones, b, texelFetch(cells, sdv_cell_at(b, p)), p, direction).cone;
+        }
+    }
     if (lao_constant_variant == 2) {
         color = texelFetch(seen_color, pixel, 0).xyz;
-    } else if (lao_constant_variant == 1 && hit.w < 0.0) {
-        color = texelFetch(shapes, 4 + 4 * int(r.y)).xyz;
-    } else {
-        int at = 2 * int(hit.w);
+    } else if (cone >= 0.0) {
+        int at = 2 * int(cone);
         color = sdv_cone_color(p, texelFetch(cones, at), texelFetch(cones, at + 1), texelFetch(colors, at).xyz,
                                texelFetch(colors, at + 1).xyz);
     }
-    lao_v3 towards = lao_v3_scale(direction, -1.0);
+    float white = white_at(pixel);
     bool inked = lao_constant_parameterization > 1 && lao_constant_style != SDV_STYLE_PLAIN;
-    float white = inked ? texelFetch(ink, pixel, 0).x : 1.0;
     if (inked && lao_constant_style != SDV_STYLE_SHADOW) {
         out_color = vec4(lao_v3_scale(color, white), 1.0);
         return;
     }
-    LAO_EXACT float light = 1.0;
-    if (lao_constant_field_occlusion != 0 && lao_constant_variant != 2) {
-        light = sdv_light_at(cells, ids, cones, shapes, fields, sdv_box_fetch(box), p, n.xyz, r.w > 0.5,
-                             lao_constant_variant == 1);
-    }
+    lao_v3 facing = facing_at(hit, n.xyz);
+    float light = field_light(p, facing, r);
     if (lao_constant_near_miss != SDV_NEAR_MISS_NONE && lao_constant_variant != 2 && !inked) {
         light = sdv_dimmed(light, sdv_depth_shadow_at(n, r), lao_setting_shadow_strength);
     }
-    lao_v3 shade = sdv_shade(color, n.xyz, towards, lao_setting_surface_ambient, lao_setting_surface_diffuse,
+    lao_v3 towards = lao_v3_scale(direction, -1.0);
+    lao_v3 shade = sdv_shade(color, facing, towards, lao_setting_surface_ambient, lao_setting_surface_diffuse,
                              lao_setting_surface_specular, lao_constant_surface_shininess, light);
     out_color = vec4(lao_v3_scale(shade, white), 1.0);
 }

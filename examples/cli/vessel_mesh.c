@@ -50,10 +50,11 @@ static bool embedded(cli_tree *tree) {
 bool cli_tree_mesh(cli_tree *tree) {
     const cli_vessel_options *v = &tree->options->vessel;
     const io_mesh *mesh = &tree->contents.mesh;
-    if (v->layout[0] || v->layout[1] || v->path || v->target || v->tree || v->shape_count)
-        return cli_fail("%s: is a surface; --layout, --path, --target, --tree and shapes want a "
-                        "vessel tree",
-                        tree->source->path ? tree->source->path : v->surface);
+    if (v->layout[0] || v->layout[1] || v->target_count || v->link || v->tree || v->shape_count)
+        return cli_fail(
+            "%s: is a surface; --layout, --link, --path, --target, --tree and shapes want a "
+            "vessel tree",
+            tree->source->path ? tree->source->path : v->surface);
     if (!tree->source->path)
         return embedded(tree);
     float *positions = cli_new(mesh->vertex_count, 3 * sizeof *positions);

@@ -15,6 +15,7 @@ typedef struct screen {
     float threshold, period, recycle, converge, set;
     int guide, sweeps;
     const lao_v4 *cones;      /* two each; for SDV_GUIDE_OWN of trees */
+    const uint8_t *colors;    /* RGBA, two each; for marks; NULL: none */
     const float *pattern;     /* of sdv_object; NULL: none */
     const lao_v4 *directions; /* of what is not a tree; else NULL */
     screen_pyramid depth, filled, place, facing, tensor, spread, along, across, recalled, phase,

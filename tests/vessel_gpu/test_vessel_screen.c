@@ -35,7 +35,8 @@ static void scene_make(scene *s, const subject *tree) {
     s->lines.supersampling = 1;
     s->vessel.parameterization = 2;
     s->vessel.ssp_period = 1.5f;
-    s->vessel.set = SDV_SET(field_occlusion); /* light of the ink is the surface's alone */
+    /* light of the ink is the surface's alone */
+    s->vessel.set = SDV_SET(field_occlusion) | SDV_SET(joint_smoothness);
     s->shot.camera = render_camera(0.3, 0.5, 0.8, 45);
     render_perspective(&s->shot.camera, 40, (double)WIDTH / HEIGHT, 1, 200);
 }
@@ -81,6 +82,7 @@ static void screen_of(const scene *s, const subject *tree, screen *c) {
     c->sweeps = (int)values[SDV_SETTING_ID_ssp_sweeps];
     c->guide = (int)values[SDV_SETTING_ID_guide];
     c->cones = tree ? tree->grid.cones : NULL;
+    c->colors = tree ? tree->colors : NULL;
 }
 
 /* A frame of a device against C, whose `c` holds the frame before. */
