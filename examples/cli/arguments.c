@@ -30,6 +30,7 @@ typedef enum flag_type {
     FLAG_SETTING, /* the setting named in `choices` */
     FLAG_LAYOUT,  /* const char *[2]: the name of an .svg, of a .json */
     FLAG_SHAPE,   /* a further shape; `choices`: the operation */
+    FLAG_TARGET,  /* a further path ("path" in `choices`) or target */
     FLAG_FOCUS,   /* cli_surface_options: two numbers or four */
 } flag_type;
 
@@ -57,16 +58,19 @@ static const flag_row flags[] = {
     {"--out", "-o", "FILE.png", FLAG_TEXT, BOTH | CLI_SHEET | CLI_SURFACE, ALL(out), NULL, "the picture; with --frames a pattern (out_%04d.png, first = 0), or a video: .mp4, .webm, .gif"},
     {"--out", "-o", "FILE", FLAG_TEXT, CLI_FLOW, ALL(out), NULL, "the lines: .vtp (with time and speed), .trk (the same) or .tck (positions alone)"},
     {"--out", "-o", "FILE.png", FLAG_TEXT, CLI_VESSEL, ALL(out), NULL, "the picture; of several cameras or frames a pattern (out_%04d.png, first = 0) or a video"},
-    {"--style", NULL, "NAME", FLAG_CHOICE, CLI_VESSEL, ALL(vessel.style), CLI_STYLES, "a set of settings: default, plain (light alone), ink (flat colours and outlines) or glow (soft, no outlines)"},
+    {"--style", NULL, "NAME", FLAG_CHOICE, CLI_VESSEL, ALL(vessel.style), CLI_STYLES, "a set of settings: default, plain (light alone), ink (flat colours and outlines), glow (soft, no outlines), stipple, hatch, crosshatch, layered (ink that follows the vessels), shadow (hatched depth shadows) or void (depth as colour behind them)"},
     {"--grid", NULL, "N", FLAG_COUNT, CLI_VESSEL, ALL(vessel.grid), NULL, "cells of the distance field along its longest axis, 16..512 (128)"},
     {"--layout", NULL, "FILE", FLAG_LAYOUT, CLI_VESSEL, ALL(vessel.layout), NULL, "the tree in 2D: a drawing (.svg) or numbers (.json); give it twice for both"},
-    {"--layout-weight", NULL, "NAME", FLAG_TEXT, CLI_VESSEL, ALL(vessel.weight), NULL, "lay out by this attribute of the nodes, or by radius, instead of by the number of nodes"},
+    {"--layout-weight", NULL, "NAME", FLAG_TEXT, CLI_VESSEL, ALL(vessel.weight), NULL, "lay out by this attribute of the nodes, by radius, or by how near they are to the --path or --target (near), instead of by their number"},
     {"--tree", NULL, "FILE.json", FLAG_TEXT, CLI_VESSEL, ALL(vessel.tree), NULL, "nodes and segments as they are drawn; segment.V of a dump counts these"},
-    {"--path", NULL, "X,Y,Z:X,Y,Z...", FLAG_TEXT, CLI_VESSEL, ALL(vessel.path), NULL, "distances of the vessels to a path through these points (mm): a needle"},
-    {"--target", NULL, "X,Y,Z,R|MESH", FLAG_TEXT, CLI_VESSEL, ALL(vessel.target), NULL, "the same to a ball, or to the surface in a file: a tumour"},
-    {"--subtract", NULL, "SHAPE", FLAG_SHAPE, CLI_VESSEL, ALL(vessel.shapes), "2", "cut away sphere:X,Y,Z,R, box:X,Y,Z,X,Y,Z (two corners), plane:NX,NY,NZ,D (where n.p < D) or the inside of a FILE (mesh or tree)"},
+    {"--path", NULL, "X,Y,Z:X,Y,Z...", FLAG_TARGET, CLI_VESSEL, ALL(vessel.targets), "path", "distances of the vessels to a path through these points (mm): a needle"},
+    {"--target", NULL, "X,Y,Z,R|MESH", FLAG_TARGET, CLI_VESSEL, ALL(vessel.targets), NULL, "the same to a ball, or to the surface in a file: a tumour"},
+    {"--risk", NULL, "MM", FLAG_LENGTH, CLI_VESSEL, ALL(vessel.risk), NULL, "mark vessels nearer than this with a pattern, and list them in --json (with --link 15)"},
+    {"--link", NULL, NULL, FLAG_SWITCH, CLI_VESSEL, ALL(vessel.link), NULL, "the picture shows the 2D layout beside the tree, in the same colours and patterns; --path and --target may be given up to 6 times: a column for each"},
+    {"--subtract", NULL, "SHAPE", FLAG_SHAPE, CLI_VESSEL, ALL(vessel.shapes), "2", "cut away sphere:X,Y,Z,R, box:X,Y,Z,X,Y,Z (two corners), plane:NX,NY,NZ,D (where n.p < D), ellipsoid:X,Y,Z,A,B,C (half axes) or the inside of a FILE (mesh or tree)"},
     {"--intersect", NULL, "SHAPE", FLAG_SHAPE, CLI_VESSEL, ALL(vessel.shapes), "1", "keep what is inside; the shapes are applied in the order of the flags"},
-    {"--union", NULL, "SHAPE", FLAG_SHAPE, CLI_VESSEL, ALL(vessel.shapes), "0", "add the shape"},
+    {"--union", NULL, "SHAPE", FLAG_SHAPE, CLI_VESSEL, ALL(vessel.shapes), "0", "add the shape; --union tree adds the vessels again, behind the cuts of an organ"},
+    {"--shape-color", NULL, "#rrggbb|nearest", FLAG_PAINT, CLI_VESSEL, ALL(vessel.shape_color), NULL, "of what shapes add or cut open, or that of the nearest vessel"},
     {"--nodes", NULL, "N", FLAG_COUNT, CLI_VESSEL, ALL(vessel.nodes), NULL, "of the embedded tree, when no TREE is given (3000)"},
     {"--cameras", NULL, "FILE.json", FLAG_TEXT, CLI_VESSEL, ALL(vessel.cameras), NULL, "an array of cameras: one picture for each"},
     {"--frames", NULL, "N", FLAG_COUNT, CLI_VESSEL, ALL(frames), NULL, "pictures of one turn around the tree"},
@@ -127,8 +131,8 @@ static const flag_row flags[] = {
     {"--backdrop", NULL, NULL, FLAG_SWITCH, CLI_RENDER, ALL(backdrop), NULL, "of velocity volumes and the scene flow: the highest speeds of the beat behind the lines, the vessel's outline around"},
     {"--shared-occlusion", NULL, NULL, FLAG_SWITCH, DRAWN, ALL(shared_occlusion), NULL, "FILEs occlude each other, not only themselves; settings from occlusion to shading are then the first FILE's"},
     {"--outline", NULL, "MESH", FLAG_TEXT, CLI_RENDER, ALL(outline), NULL, "the silhouette of a vessel's wall (mm) behind the lines and its outline around: STL, PLY, OBJ, VTP or VTK"},
-    {"--legend", NULL, "SIDE", FLAG_CHOICE, CLI_RENDER | CLI_SURFACE, ALL(legend), "off|left|right|bottom", "scale of each attribute's colours in the picture: off, left, right or bottom (off)"},
-    {"--legend-title", NULL, "TEXT", FLAG_TEXT, CLI_RENDER | CLI_SURFACE, ALL(legend_title), NULL, "above the first scale (the attribute's name, and its unit if known)"},
+    {"--legend", NULL, "SIDE", FLAG_CHOICE, SHOT, ALL(legend), "off|left|right|bottom", "scale of each attribute's colours in the picture: off, left, right or bottom (off)"},
+    {"--legend-title", NULL, "TEXT", FLAG_TEXT, SHOT, ALL(legend_title), NULL, "above the first scale (the attribute's name, and its unit if known)"},
     {"--dump", NULL, "FILE.exr", FLAG_TEXT, SHOT, ALL(dump), NULL, "every image of the frame graph as 32-bit floats (OpenEXR)"},
     {"--timings", NULL, "FILE.json", FLAG_TEXT, SHOT, ALL(timings), NULL, "milliseconds of the frame and of each pass"},
     {"--columns", NULL, "N", FLAG_COUNT, CLI_SHEET, ALL(columns), NULL, "pictures in a row (3)"},
@@ -141,8 +145,8 @@ static const flag_row flags[] = {
     {"--colormap", NULL, "NAME", FLAG_CHOICE, BOTH, FILE_(colormap), COLOUR_MAPS, "of attributes: " COLOUR_MAPS " (viridis)"},
     {"--range", NULL, "A,B", FLAG_RANGE, BOTH, FILE_(range), NULL, "values at both ends of the colour map, or percentiles of all (2%,98%)"},
     {"--color", NULL, "NAME", FLAG_PAINT, CLI_VESSEL, FILE_(color), NULL, "layout (hue and saturation of the 2D layout), radius, order (of branching), distance, #rrggbb or the NAME of an attribute"},
-    {"--colormap", NULL, "NAME", FLAG_CHOICE, CLI_VESSEL, FILE_(colormap), COLOUR_MAPS, "of numbers: " COLOUR_MAPS " (viridis)"},
-    {"--range", NULL, "A,B", FLAG_RANGE, CLI_VESSEL, FILE_(range), NULL, "values at both ends of the colour map (those of the data)"},
+    {"--colormap", NULL, "NAME", FLAG_CHOICE, CLI_VESSEL, FILE_(colormap), COLOUR_MAPS, "of numbers: " COLOUR_MAPS " (viridis; with --risk coolwarm, red near, blue far)"},
+    {"--range", NULL, "A,B", FLAG_RANGE, CLI_VESSEL, FILE_(range), NULL, "values at both ends of the colour map (those of the data; with --risk twice that, 0)"},
     {"--every", NULL, "N", FLAG_COUNT, TRACE, FILE_(every), NULL, "keep each N-th line"},
     {"--min-length", NULL, "MM", FLAG_LENGTH, TRACE, FILE_(min_length), NULL, "drop shorter lines (files: none; of a volume: shorter than two voxels)"},
     {"--bundle", NULL, "NAME", FLAG_TEXT, BOTH, FILE_(bundle), NULL, "keep the lines of this group (TRX group, TT cluster)"},
@@ -425,6 +429,15 @@ static bool add_shape(parser *p, const flag_row *row, const char *value) {
     return true;
 }
 
+static bool add_target(parser *p, const flag_row *row, const char *value) {
+    cli_vessel_options *o = &p->options->vessel;
+    if (o->target_count == CLI_TARGETS)
+        return cli_fail("%s: more than %d paths and targets", row->name, CLI_TARGETS);
+    o->targets[o->target_count].path = row->choices != NULL;
+    o->targets[o->target_count++].text = value;
+    return true;
+}
+
 /* Two depths, the nearer first, or a ball. */
 static bool parse_focus(const char *text, cli_surface_options *out) {
     out->focus = text;
@@ -501,6 +514,8 @@ static bool set_flag(parser *p, const flag_row *row, const char *value) {
         return set_layout(row, value, field);
     case FLAG_SHAPE:
         return add_shape(p, row, value);
+    case FLAG_TARGET:
+        return add_target(p, row, value);
     case FLAG_FOCUS:
         ok = parse_focus(value, field);
         break;
@@ -577,11 +592,19 @@ static bool check_vessel(const cli_options *o) {
         return cli_fail("vessel: no output is asked for; write -o out.png");
     if (v->grid && (v->grid < 16 || v->grid > 512))
         return cli_fail("--grid: '%u' is not a value of it; write 16..512", v->grid);
-    if (v->path && v->target)
-        return cli_fail("--path: is given beside --target; leave one of them out");
+    if (v->target_count > 1 && !v->link)
+        return cli_fail("--path: is given beside --target; leave one of them out or write --link");
     const cli_source *source = o->file_count ? &o->files[0] : &o->all;
-    if (source->color && strcmp(source->color, "distance") == 0 && !v->path && !v->target)
+    if (source->color && strcmp(source->color, "distance") == 0 && !v->target_count)
         return cli_fail("--color: distance needs a --path or a --target");
+    if (v->risk >= 0 && !v->target_count)
+        return cli_fail("--risk: is a distance to a --path or a --target, and none is given");
+    if (v->shape_color && !v->shape_count)
+        return cli_fail("--shape-color: there is no shape; write --union, --subtract or "
+                        "--intersect");
+    if (v->shape_color && strcmp(v->shape_color, "nearest") != 0 && *v->shape_color != '#')
+        return cli_fail("--shape-color: '%s' is not a value of it; write #rrggbb or nearest",
+                        v->shape_color);
     if (v->cameras && (o->camera || o->frames || o->view || o->ortho))
         return cli_fail("--cameras: says where every picture is taken from; leave %s out",
                         o->camera   ? "--camera"
@@ -670,8 +693,9 @@ bool cli_parse(cli_command_bit command, int argc, char **argv, cli_options *out)
     out->time = NAN;
     out->size[0] = command == CLI_COMPARE ? 640 : 1280;
     out->size[1] = command == CLI_COMPARE ? 480 : 960;
-    out->legend = "off";
-    out->all.colormap = "viridis";
+    out->legend = command == CLI_VESSEL ? NULL : "off";
+    out->all.colormap = command == CLI_VESSEL ? NULL : "viridis";
+    out->vessel.risk = -1;
     out->all.range[0] = (colour_end){command == CLI_VESSEL ? 0 : 2, true};
     out->all.range[1] = (colour_end){command == CLI_VESSEL ? 100 : 98, true};
     out->flow.threshold = -1;

@@ -71,18 +71,27 @@ typedef struct cli_flow_options {
     bool streamlines;
 } cli_flow_options;
 
-#define CLI_STYLES "default|plain|ink|glow"
+#define CLI_STYLES "default|plain|ink|glow|stipple|hatch|crosshatch|layered|shadow|void"
 
 /* What `vessel` does with a tree. */
-enum { CLI_SHAPES = 16 };
+enum { CLI_SHAPES = 16, CLI_TARGETS = 6 };
 typedef struct cli_shape_option {
     uint32_t operation; /* SDV_UNION, ... */
     const char *text;
 } cli_shape_option;
+typedef struct cli_target_option {
+    bool path;
+    const char *text;
+} cli_target_option;
 typedef struct cli_vessel_options {
-    const char *style, *tree, *path, *target, *cameras, *weight;
-    const char *layout[2]; /* NAME.svg, NAME.json */
-    uint32_t grid, nodes;  /* cells; nodes of the embedded tree; 0: not given */
+    const char *style, *tree, *cameras, *weight;
+    cli_target_option targets[CLI_TARGETS]; /* several only with `link` */
+    uint32_t target_count;
+    double risk; /* mm; negative: not given */
+    bool link;
+    const char *shape_color; /* "nearest" or a colour; NULL: ivory */
+    const char *layout[2];   /* NAME.svg, NAME.json */
+    uint32_t grid, nodes;    /* cells; nodes of the embedded tree; 0: not given */
     cli_shape_option shapes[CLI_SHAPES];
     uint32_t shape_count;
 } cli_vessel_options;
@@ -104,9 +113,9 @@ typedef struct cli_options {
     cli_source *files; /* owned */
     uint32_t file_count;
     const char *scene, *out, *dump, *timings, *backend, *camera, *save_camera, *view;
-    const char *legend, *legend_title;            /* "off" or a side; NULL: name and unit */
-    const char *title, *note;                     /* of a sheet */
-    const char *outline;                          /* a mesh behind and around the lines */
+    const char *legend, *legend_title; /* "off", a side or NULL: automatic; NULL: name and unit */
+    const char *title, *note;          /* of a sheet */
+    const char *outline;               /* a mesh behind and around the lines */
     uint32_t lines, frames, fps, columns, widest; /* 0: not given */
     uint32_t size[2];
     double time; /* ms; NaN: not given */

@@ -18,6 +18,10 @@ int cli_surface(const cli_options *options);
  * extension. For free(). NULL: reported. */
 char *cli_frame_path(const char *path, uint32_t frame);
 
+/* Pixels as a file of their own, or into a video; opaque: without their alpha, in place. False:
+ * reported. */
+bool cli_write_pixels(const char *path, cli_video *video, picture *p, bool opaque);
+
 /* Draws something over a picture. False: reported. */
 typedef bool (*cli_picture_edit)(void *user, picture *p);
 /* The session's last frame into a file of its own, or into `video` unless that is NULL. opaque:

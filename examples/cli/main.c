@@ -50,10 +50,15 @@ static const char vessel_about[] =
     "The layout draws the tree flat (Lichtenberg 2019): each branch has a place across (hue) and "
     "a\n"
     "depth (saturation), and the picture shows the same colours, so that a branch in one is found\n"
-    "in the other. With a --path or --target, colours are distances to it.\n\n"
+    "in the other. With a --path or --target, colours are distances to it.\n"
+    "--link shows both beside each other. What comes nearer than --risk (15 mm) has a pattern in\n"
+    "both, is counted above them, and is listed by --json: segments (as --tree counts them) and\n"
+    "branches (as --layout numbers them); the nearest nine have numbers, 1 the nearest. Isolines\n"
+    "are where the ticks of the scale are.\n\n"
     "Without -o, --dump, --timings and --save-camera nothing is drawn and no GPU is opened.\n"
     "A dump holds, in mm: position.X .Y .Z, normal.X .Y .Z, segment.V (counts --tree; -1 nothing,\n"
-    "-2 a shape), mask.V, dmin.V (the nearest miss of the pixel's ray; 1e30: none), distance.V.\n";
+    "-2 a shape), mask.V, dmin.V (the nearest miss of the pixel's ray; 1e30: none), distance.V,\n"
+    "bgposition.X .Y .Z, bgnormal.X .Y .Z, guide.X .Y, uv.U .V.\n";
 
 static const char surface_about[] =
     "A MESH is STL, PLY, OBJ, VTP or VTK. A TREE (as lineao vessel takes it) or a velocity VOLUME\n"
@@ -126,6 +131,9 @@ static const command_row commands[] = {
      "  lineao vessel lung.vtp --unit cm --color radius -o radius.png\n"
      "  lineao vessel --target 20,10,0,12 --layout risk.json -o risk.png   distances to a tumour\n"
      "  lineao vessel --path -90,0,0:20,10,0 -o needle.png      distances to a needle's path\n"
+     "  lineao vessel --link --target 32,8,12,16 -o link.png    what is near a tumour, in 3D and "
+     "2D\n"
+     "  lineao vessel --link --path -90,0,0:20,10,0 --path 0,-90,0:20,10,0 -o paths.png --json\n"
      "  lineao vessel --subtract box:-200,0,0,0,200,200 -o cut.png          cut a corner away\n"
      "  lineao vessel tree.gxl --style ink --ortho --view coronal -o ink.png\n"
      "  lineao vessel --frames 120 -o turn.mp4                  one turn around it\n"
