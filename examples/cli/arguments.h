@@ -98,11 +98,13 @@ typedef struct cli_vessel_options {
 
 /* What `surface` does with a mesh. */
 typedef struct cli_surface_options {
-    const char *lines, *vertices, *baseline, *focus, *value, *flip;
+    const char *lines, *vertices, *baseline, *focus, *value, *flip, *colormap;
     double focus_at[4]; /* two numbers (depths, mm) or four (a ball) */
     int focus_numbers;  /* 0: none */
-    uint32_t smooth, subdivide;
-    double brightness; /* mm; 0: from the mesh; negative: not given */
+    uint32_t smooth, subdivide, grid;
+    double brightness;  /* mm; 0: from the mesh; negative: not given */
+    double contours[2]; /* mm, width of contours and suggestive contours; 0: none */
+    double threshold;   /* 1/mm^2, of the latter; negative: not given */
     bool normals;
 } cli_surface_options;
 
@@ -113,6 +115,7 @@ typedef struct cli_options {
     const char *scene, *out, *dump, *timings, *backend, *camera, *save_camera, *view;
     const char *legend, *legend_title; /* "off", a side or NULL: automatic; NULL: name and unit */
     const char *title, *note;          /* of a sheet */
+    const char *outline;               /* a mesh behind and around the lines */
     uint32_t lines, frames, fps, columns, widest; /* 0: not given */
     uint32_t size[2];
     double time; /* ms; NaN: not given */

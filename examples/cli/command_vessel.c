@@ -99,7 +99,7 @@ static bool edit_planes(void *user, cli_planes *planes) {
 /* ---- pictures ---------------------------------------------------------------------------- */
 
 /* Pixels as a file of its own, or into a video; alpha is dropped where the paper is opaque. */
-static bool write_pixels(const char *path, cli_video *video, const picture *p, bool opaque) {
+bool cli_write_pixels(const char *path, cli_video *video, picture *p, bool opaque) {
     char error[IMAGE_ERROR_SIZE];
     for (size_t i = 0; opaque && i < (size_t)p->width * p->height; i++)
         memmove(p->pixels + 3 * i, p->pixels + 4 * i, 3);
@@ -108,10 +108,11 @@ static bool write_pixels(const char *path, cli_video *video, const picture *p, b
                        cli_fail("%s", error);
 }
 
-bool cli_write_picture(const char *path, cli_video *video, cli_session *session,
-                       const cli_shot *shot) {
-    picture p = {shot->width, shot->height, cli_session_picture(session)};
-    bool ok = p.pixels && write_pixels(path, video, &p, !(shot->background[3] < 1));
+bool cli_write_picture(const char *path, cli_video *video, cli_session *session, bool opaque,
+                       cli_picture_edit edit, void *user) {
+    picture p = {0, 0, NULL};
+    bool ok = cli_session_picture(session, &p) && (!edit || edit(user, &p)) &&
+              cli_write_pixels(path, video, &p, opaque);
     picture_free(&p);
     return ok;
 }
@@ -132,15 +133,13 @@ static bool write_page(const char *path, stage *s) {
     picture solids[CLI_TARGETS], whole;
     bool opaque = !(s->options->background[3] < 1), ok = true;
     memset(solids, 0, sizeof solids);
-    for (uint32_t i = 0; ok && i < s->count; i++) {
-        solids[i] = (picture){s->shot.width, s->shot.height, cli_session_picture(&s->sessions[i])};
-        ok = solids[i].pixels != NULL;
-    }
+    for (uint32_t i = 0; ok && i < s->count; i++)
+        ok = cli_session_picture(&s->sessions[i], &solids[i]);
     ok = ok && (picture_make(s->options->size[0], s->options->size[1], &whole) ||
                 cli_fail("out of memory"));
     if (ok) {
         ok = cli_page_draw(&s->page, s->trees, &s->shot, solids, s->flats, &whole) &&
-             write_pixels(path, s->video, &whole, opaque);
+             cli_write_pixels(path, s->video, &whole, opaque);
         picture_free(&whole);
     }
     for (uint32_t i = 0; i < s->count; i++)
@@ -148,14 +147,15 @@ static bool write_page(const char *path, stage *s) {
     return ok;
 }
 
-static bool write_view(const char *path, stage *s) {
+static bool draw_legend(void *user, picture *p) {
+    stage *s = user;
     const char *side = s->options->legend;
-    picture p = {s->shot.width, s->shot.height, cli_session_picture(&s->sessions[0])};
-    bool ok = p.pixels &&
-              (!side || strcmp(side, "off") == 0 || cli_tree_legend(&s->trees[0], side, &p)) &&
-              write_pixels(path, s->video, &p, !(s->shot.background[3] < 1));
-    picture_free(&p);
-    return ok;
+    return !side || strcmp(side, "off") == 0 || cli_tree_legend(&s->trees[0], side, p);
+}
+
+static bool write_view(const char *path, stage *s) {
+    return cli_write_picture(path, s->video, &s->sessions[0], s->shot.background[3] >= 1,
+                             draw_legend, s);
 }
 
 /* frame -1: the only one. */

@@ -266,14 +266,11 @@ float *cli_session_image(cli_session *session, const char *name, uint32_t level,
     return data;
 }
 
-uint8_t *cli_session_picture(cli_session *session) {
+bool cli_session_picture(cli_session *session, picture *out) {
     lao_read_info info;
     uint8_t *pixels = cli_session_texels(session, "out", 0, &info);
-    if (!pixels) {
-        if (!info.width)
-            cli_fail("%s: the frame graph has no picture", session->backend);
-        return NULL;
-    }
+    if (!pixels)
+        return info.width == 0 && cli_fail("%s: the frame graph has no picture", session->backend);
     flip(pixels, info.height, (size_t)info.width * 4);
     for (size_t i = 0; i < (size_t)info.width * info.height; i++) {
         uint8_t *p = pixels + 4 * i;
@@ -282,5 +279,6 @@ uint8_t *cli_session_picture(cli_session *session) {
             p[k] = (uint8_t)(value > 255 ? 255 : value);
         }
     }
-    return pixels;
+    *out = (picture){info.width, info.height, pixels};
+    return true;
 }

@@ -4,6 +4,7 @@
 
 #include "camera.h"
 #include "load.h"
+#include "picture.h"
 
 /* What one frame is taken with. Matrices and sphere are relative to the scene's origin. */
 typedef struct cli_shot {
@@ -44,8 +45,8 @@ bool cli_session_render(cli_session *session, const cli_shot *shot, uint32_t fra
 /* The name of the device that draws. */
 const char *cli_session_device(const cli_session *session);
 
-/* The last frame as RGBA, not premultiplied, top row first, for free(). NULL: reported. */
-uint8_t *cli_session_picture(cli_session *session);
+/* The last frame, for picture_free. False: reported, nothing to free. */
+bool cli_session_picture(cli_session *session, picture *out);
 
 /* An image of the graph, if this plan has it. Values as lao_read gives them but with the top row
  * first, or raw texels as stored; for free(). NULL and width 0: there is no such image; NULL

@@ -38,6 +38,7 @@ static void fit_camera(const cli_options *options, const cli_scene *scene, doubl
     camera_fit_begin(&fit, scene->direction, scene->up, aspect, 0.05, options->ortho ? 0 : 30);
     for (uint32_t s = 0; s < scene->count; s++)
         camera_fit_add(&fit, scene->sets[s].lines.points, scene->sets[s].lines.point_count);
+    camera_fit_add(&fit, scene->outline.positions, scene->outline.vertex_count);
     camera_fit_end(&fit, out);
     for (int k = 0; k < 3; k++) {
         out->eye[k] += scene->origin[k];
