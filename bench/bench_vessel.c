@@ -12,7 +12,7 @@
 #include <string.h>
 #include <time.h>
 
-enum { ROUNDS = 3, TREES = 5, PASSES = 64 };
+enum { ROUNDS = 3, TREES = 5, PASSES = 160, FIELD_SEGMENTS = 6000 };
 
 static double now(void) {
     struct timespec t;
@@ -92,6 +92,27 @@ static bool make_grid(const sdv_tree *tree, uint32_t resolution, bool two, sdv_g
     return result == LAO_OK || bench_fail("sdv_grid_build: %s", lao_result_text(result));
 }
 
+/* Seconds for the distance of every cell to all segments, from one cell in SAMPLED. */
+static double brute_force(const sdv_tree *tree, uint32_t resolution) {
+    enum { SAMPLED = 997 };
+    sdv_grid grid;
+    volatile float sum = 0;
+    if (!make_grid(tree, resolution, true, &grid))
+        return NAN;
+    double start = now();
+    for (uint32_t i = 0; i < grid.cell_count; i += SAMPLED) {
+        uint32_t x = i % grid.size[0], y = i / grid.size[0] % grid.size[1];
+        float z = (float)(i / grid.size[0] / grid.size[1]);
+        lao_v3 p = lao_v3_make(grid.origin.x + ((float)x + 0.5f) * grid.cell,
+                               grid.origin.y + ((float)y + 0.5f) * grid.cell,
+                               grid.origin.z + (z + 0.5f) * grid.cell);
+        sum = sum + sdv_cones_distance(grid.cones, grid.cone_count, p, NULL);
+    }
+    double seconds = SAMPLED * (now() - start);
+    sdv_grid_free(&grid);
+    return seconds;
+}
+
 static bool measure_field(cJSON *list, const sdv_tree *tree, uint32_t resolution) {
     double seconds[2] = {INFINITY, INFINITY};
     cJSON *row = cJSON_CreateObject();
@@ -113,6 +134,7 @@ static bool measure_field(cJSON *list, const sdv_tree *tree, uint32_t resolution
         }
         sdv_grid_free(&grid);
     }
+    cJSON_AddNumberToObject(row, "ms_brute_1", 1e3 * brute_force(tree, resolution));
     cJSON_AddNumberToObject(row, "ms_1", 1e3 * seconds[0]);
     cJSON_AddNumberToObject(row, "ms_2", 1e3 * seconds[1]);
     return true;
@@ -245,12 +267,108 @@ static bool measure_rays(bench_device *device, lao_context *context, const subje
     return ok;
 }
 
+/* ---- fields by the device ----------------------------------------------------------------- */
+
+/* Times of the rows that build the field, from the first to the last of them. */
+static double field_time(const lao_timing *rows, uint32_t count, cJSON *passes) {
+    double sum = 0;
+    bool inside = false;
+    for (uint32_t i = 0; i < count && i < PASSES; i++) {
+        inside = inside || strcmp(rows[i].pass, "vessel_region_counts") == 0;
+        if (!inside)
+            continue;
+        cJSON *known = cJSON_GetObjectItemCaseSensitive(passes, rows[i].pass);
+        if (known)
+            cJSON_SetNumberValue(known, cJSON_GetNumberValue(known) + rows[i].milliseconds);
+        else
+            cJSON_AddNumberToObject(passes, rows[i].pass, rows[i].milliseconds);
+        sum += rows[i].milliseconds;
+        if (strcmp(rows[i].pass, "vessel_grid") == 0)
+            break;
+    }
+    return sum;
+}
+
+static bool draw_field(bench_device *device, lao_context *context, lao_view view, lao_object object,
+                       lao_timing *rows, uint32_t *count) {
+    const void *settings[1] = {NULL};
+    lao_settings lines;
+    lao_frame frame;
+    lao_set set;
+    double ms;
+    memset(&set, 0, sizeof set);
+    memset(&lines, 0, sizeof lines);
+    lines.supersampling = 1;
+    set.object = object;
+    set.settings = &lines;
+    set.module_settings = settings;
+    make_frame(&frame, &set);
+    frame.view = view;
+    return bench_device_frame(device, context, &frame, &ms) &&
+           lao_timings(context, view, rows, count) == LAO_OK;
+}
+
+/* A tree that moves: the upload of its cones, and the rows that make its field of them. */
+static bool measure_device_field(bench_device *device, lao_context *context, sdv_tree *tree,
+                                 uint32_t resolution, cJSON *list) {
+    const lao_view_desc size = {64, 64, 0};
+    lao_timing rows[PASSES];
+    lao_limits limits;
+    lao_object handle = {0};
+    lao_view view = {0};
+    sdv_grid_desc desc;
+    sdv_object object;
+    double upload = INFINITY, field = INFINITY;
+    cJSON *row = cJSON_CreateObject(), *best = NULL;
+    memset(&desc, 0, sizeof desc);
+    desc.resolution = resolution;
+    cJSON_AddItemToArray(list, row);
+    lao_limits_get(context, &limits);
+    if (sdv_object_make_tree(NULL, tree, &desc, limits.image_size, NULL, &object) != LAO_OK)
+        return bench_fail("sdv_object_make_tree");
+    bool ok = lao_object_create(context, &object.desc, &handle) == LAO_OK &&
+              lao_view_create(context, &size, &view) == LAO_OK;
+    for (int round = 0; ok && round <= ROUNDS; round++) {
+        const uint32_t node = tree->node_count / 2;
+        uint32_t count = PASSES;
+        cJSON *passes = cJSON_CreateObject();
+        double start = now();
+        ok = sdv_object_move(NULL, tree, &node, 1, &object) == LAO_OK &&
+             lao_object_update(context, handle, &object.desc) == LAO_OK;
+        upload = round > 0 ? fmin(upload, 1e3 * (now() - start)) : upload;
+        ok = ok && draw_field(device, context, view, handle, rows, &count);
+        double ms = ok ? field_time(rows, count, passes) : 0;
+        if (ok && round > 0 && ms < field) {
+            field = ms;
+            cJSON_Delete(best);
+            best = passes;
+        } else {
+            cJSON_Delete(passes);
+        }
+    }
+    cJSON_AddStringToObject(row, "backend", device->backend);
+    cJSON_AddNumberToObject(row, "segments", tree->segment_count);
+    cJSON_AddNumberToObject(row, "resolution", resolution);
+    cJSON_AddBoolToObject(row, "on_device", object.on_device != 0);
+    cJSON_AddNumberToObject(row, "upload_ms", upload);
+    cJSON_AddNumberToObject(row, "ms", field);
+    cJSON_AddItemToObject(row, "passes", best ? best : cJSON_CreateObject());
+    lao_view_destroy(context, view);
+    lao_object_destroy(context, handle);
+    sdv_object_free(&object);
+    return ok || bench_fail("a field on the device");
+}
+
 static bool measure_backend(const char *backend, subject *subjects, uint32_t count, bool quick,
-                            cJSON *list) {
+                            cJSON *fields, cJSON *list) {
     bench_device device;
     lao_context *context = NULL;
     bool ok = bench_device_open(&device, backend) &&
               bench_device_context(&device, sdv_module(), &context);
+    for (uint32_t i = 1; ok && i < count; i++)
+        ok = subjects[i].segments > FIELD_SEGMENTS ||
+             (measure_device_field(&device, context, &subjects[i].tree, 64, fields) &&
+              (quick || measure_device_field(&device, context, &subjects[i].tree, 128, fields)));
     for (uint32_t i = 0; ok && i < count; i++)
         ok = lao_object_create(context, &subjects[i].object.desc, &subjects[i].handle) == LAO_OK;
     for (int k = 0; ok && k < (quick ? 1 : 2); k++) {
@@ -278,16 +396,17 @@ bool bench_vessel_run(cJSON *document, bool quick) {
     uint32_t count = quick ? 2 : 1 + TREES;
     subject *subjects = calloc(count, sizeof *subjects);
     cJSON *fields = cJSON_AddArrayToObject(document, "fields");
+    cJSON *device_fields = cJSON_AddArrayToObject(document, "device_fields");
     cJSON *rays = cJSON_AddArrayToObject(document, "rays");
     bool ok = subjects || bench_fail("no memory");
     for (uint32_t i = 0; ok && i < count; i++) {
         ok = make_subject(&subjects[i], nodes[i], quick ? 48 : 128);
-        if (ok && i > 0 && nodes[i] <= 6000)
+        if (ok && i > 0 && nodes[i] <= FIELD_SEGMENTS)
             ok = measure_field(fields, &subjects[i].tree, 64) &&
                  (quick || measure_field(fields, &subjects[i].tree, 128));
     }
     for (int b = 0; ok && b < 2; b++)
-        ok = measure_backend(backends[b], subjects, count, quick, rays);
+        ok = measure_backend(backends[b], subjects, count, quick, device_fields, rays);
     for (uint32_t i = 0; subjects && i < count; i++) {
         sdv_object_free(&subjects[i].object);
         sdv_grid_free(&subjects[i].grid);
@@ -303,12 +422,20 @@ static double number(const cJSON *row, const char *name) {
 
 void bench_vessel_print(const cJSON *document) {
     const cJSON *row;
-    printf("field: segments  resolution     cells    listed  bytes a cell    ms, 1 thread  2 "
-           "threads\n");
+    printf(
+        "field by the CPU: segments  resolution     cells    listed  bytes a cell  ms, 1 thread  "
+        "2 threads  brute force, 1 thread\n");
     cJSON_ArrayForEach(row, cJSON_GetObjectItemCaseSensitive(document, "fields"))
-        printf("%15.0f %11.0f %9.0f %9.0f %13.1f %16.1f %10.1f\n", number(row, "segments"),
+        printf("%26.0f %11.0f %9.0f %9.0f %13.1f %13.1f %10.1f %22.0f\n", number(row, "segments"),
                number(row, "resolution"), number(row, "cells"), number(row, "listed"),
-               number(row, "cell_bytes"), number(row, "ms_1"), number(row, "ms_2"));
+               number(row, "cell_bytes"), number(row, "ms_1"), number(row, "ms_2"),
+               number(row, "ms_brute_1"));
+    printf("\nfield by the device: segments  resolution  backend  upload ms  rows ms\n");
+    cJSON_ArrayForEach(row, cJSON_GetObjectItemCaseSensitive(document, "device_fields")) printf(
+        "%29.0f %11.0f %8s %10.1f %8.1f%s\n", number(row, "segments"), number(row, "resolution"),
+        cJSON_GetStringValue(cJSON_GetObjectItemCaseSensitive(row, "backend")),
+        number(row, "upload_ms"), number(row, "ms"),
+        cJSON_IsTrue(cJSON_GetObjectItemCaseSensitive(row, "on_device")) ? "" : "  (CPU)");
     printf(
         "\nrays: segments  backend  size  near miss   hits  steps  trace ms  shade ms  trace over "
         "one ball's\n");

@@ -15,6 +15,8 @@ LAO_TEX(11, sampler2D, surface)
 LAO_TEX(12, sampler2D, bgnormal)
 LAO_TEX(13, sampler2D, along)
 LAO_TEX(14, sampler2D, across)
+LAO_TEX(15, sampler2D, grid)
+LAO_TEX(16, sampler2D, lists)
 LAO_CONSTANT(0, lao_constant_near_miss)
 LAO_CONSTANT(1, lao_constant_surface_shininess)
 LAO_CONSTANT(2, lao_constant_field_occlusion)
@@ -23,13 +25,15 @@ LAO_CONSTANT(4, lao_constant_style)
 LAO_CONSTANT(5, lao_constant_void_style)
 LAO_CONSTANT(6, lao_constant_variant) /* 1: with shapes */
 LAO_CONSTANT(7, lao_constant_supersampling)
+LAO_CONSTANT(8, lao_constant_has_vessel_cells)
 
 LAO_OUT(0, vec4, out_color)
 
 #ifdef LAO_FRAGMENT
+LAO_INCLUDE vessel_field.glsl
 /* Signed distance at p, from the list of its cell. */
 float field_at(sdv_box b, lao_v3 p) {
-    float d = sdv_near_at(cells, ids, cones, b, texelFetch(cells, sdv_cell_at(b, p)), p, lao_v3_make(0.0, 0.0, 1.0)).distance;
+    float d = near_at(b, p, lao_v3_make(0.0, 0.0, 1.0)).distance;
     if (lao_constant_variant != 0) {
         d = sdv_solid_add_all(shapes, fields, sdv_solid_start(d), p).distance;
     }
