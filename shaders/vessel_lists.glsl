@@ -23,7 +23,8 @@ int edge_of(sdv_box b, int step) {
 }
 ivec3 size_of(sdv_box b, int step) {
     int edge = edge_of(b, step);
-    return (ivec3(b.size) + edge - 1) / edge;
+    ivec3 most = ivec3(b.size) + edge - 1;
+    return ivec3(sdv_quotient(most.x, edge), sdv_quotient(most.y, edge), sdv_quotient(most.z, edge));
 }
 int parts_of(int cone_count, int step) {
     return step == REGIONS ? (cone_count + SDV_CHUNK - 1) / SDV_CHUNK : (step == BLOCKS ? SDV_BLOCK_PARTS : 1);
