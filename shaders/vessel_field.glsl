@@ -31,3 +31,7 @@ sdv_near near_in(sdv_box box, vec4 cell, lao_v3 p, lao_v3 direction) {
 sdv_near near_at(sdv_box box, lao_v3 p, lao_v3 direction) {
     return near_in(box, cell_fetch(sdv_cell_at(box, p)), p, direction);
 }
+/* Signed distance of the tree at p. */
+float tree_distance_in(sdv_box box, vec4 cell, lao_v3 p) {
+    return near_in(box, cell, p, lao_v3_make(0.0, 0.0, 1.0)).distance;
+}

@@ -187,7 +187,7 @@ static void degenerate_trees(void **state) {
     sdv_tree_free(&tree);
 }
 
-/* Cut surfaces and exact near misses read the lists too. */
+/* Cut surfaces, exact near misses and shadows read the lists too. */
 static void all_that_reads_lists(void **state) {
     static const sdv_shape shapes[] = {
         {{2, 1, 0, 6}, {0, 0, 0, 0}, SDV_SHAPE_BALL, SDV_SUBTRACTION}};
@@ -202,6 +202,7 @@ static void all_that_reads_lists(void **state) {
     subject_make(&s, 60, 4);
     check_tree(&s.tree, 40, &cut, NULL);
     settings.near_miss = SDV_NEAR_MISS_EXACT;
+    settings.field_shadow = 1;
     check_tree(&s.tree, 40, NULL, &settings);
     subject_free(&s);
 }
