@@ -4,7 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { MESSAGE_SIZE = 1024 };
+enum { MESSAGE_SIZE = 1024, MOST_EXTENSIONS = 32 };
 
 typedef struct command_slot {
     VkCommandBuffer commands;
@@ -65,13 +65,30 @@ static bool has_validation(void) {
     return false;
 }
 
+/* Adds to the list; false: there is no room. */
+static bool add_extensions(const char **list, uint32_t *count, const char *const *names,
+                           uint32_t name_count) {
+    if (name_count > MOST_EXTENSIONS - *count)
+        return false;
+    for (uint32_t i = 0; i < name_count; i++)
+        list[(*count)++] = names[i];
+    return true;
+}
+
 static bool open_instance(host_vk *host, const host_vk_desc *desc, char *error) {
     static const char *const layer[] = {"VK_LAYER_KHRONOS_validation"};
-    static const char *const extensions[] = {VK_EXT_DEBUG_UTILS_EXTENSION_NAME,
-                                             VK_EXT_VALIDATION_FEATURES_EXTENSION_NAME};
+    const char *extensions[MOST_EXTENSIONS];
     static const VkValidationFeatureEnableEXT enables[] = {
         VK_VALIDATION_FEATURE_ENABLE_SYNCHRONIZATION_VALIDATION_EXT};
     bool hazards = desc->synchronization_validation, validation = desc->validation || hazards;
+    uint32_t count = 0;
+    if (validation)
+        extensions[count++] = VK_EXT_DEBUG_UTILS_EXTENSION_NAME;
+    if (hazards)
+        extensions[count++] = VK_EXT_VALIDATION_FEATURES_EXTENSION_NAME;
+    if (!add_extensions(extensions, &count, desc->instance_extensions,
+                        desc->instance_extension_count))
+        return fail(error, "too many extensions", VK_ERROR_EXTENSION_NOT_PRESENT);
     if (validation && !has_validation()) {
         return fail(error, "no VK_LAYER_KHRONOS_validation; install vulkan-validationlayers",
                     VK_ERROR_LAYER_NOT_PRESENT);
@@ -102,9 +119,7 @@ static bool open_instance(host_vk *host, const host_vk_desc *desc, char *error) 
         .pApplicationInfo = &application,
         .enabledLayerCount = validation ? 1 : 0,
         .ppEnabledLayerNames = layer,
-        .enabledExtensionCount = hazards      ? 2
-                                 : validation ? 1
-                                              : 0,
+        .enabledExtensionCount = count,
         .ppEnabledExtensionNames = extensions,
     };
     if (!check(error, "no instance", vkCreateInstance(&info, NULL, &host->instance)))
@@ -174,10 +189,15 @@ static void keep_supported(VkPhysicalDeviceFeatures *wanted, VkPhysicalDevice ph
     memcpy(wanted, want, sizeof want);
 }
 
-static bool open_device(host_vk *host, char *error) {
-    static const char *const extensions[] = {VK_KHR_DYNAMIC_RENDERING_EXTENSION_NAME,
-                                             VK_KHR_SYNCHRONIZATION_2_EXTENSION_NAME};
+static bool open_device(host_vk *host, const host_vk_desc *desc, char *error) {
+    static const char *const aliases[] = {VK_KHR_DYNAMIC_RENDERING_EXTENSION_NAME,
+                                          VK_KHR_SYNCHRONIZATION_2_EXTENSION_NAME};
     bool core = host->api_version >= VK_API_VERSION_1_3;
+    const char *extensions[MOST_EXTENSIONS];
+    uint32_t count = 0;
+    if (!add_extensions(extensions, &count, aliases, core ? 0 : 2) ||
+        !add_extensions(extensions, &count, desc->device_extensions, desc->device_extension_count))
+        return fail(error, "too many extensions", VK_ERROR_EXTENSION_NOT_PRESENT);
     const float priority = 1.0f;
     const VkDeviceQueueCreateInfo queue = {
         .sType = VK_STRUCTURE_TYPE_DEVICE_QUEUE_CREATE_INFO,
@@ -199,7 +219,7 @@ static bool open_device(host_vk *host, char *error) {
         .pNext = &rendering,
         .queueCreateInfoCount = 1,
         .pQueueCreateInfos = &queue,
-        .enabledExtensionCount = core ? 0 : 2,
+        .enabledExtensionCount = count,
         .ppEnabledExtensionNames = extensions,
         .pEnabledFeatures = &host->features,
     };
@@ -249,7 +269,7 @@ bool host_vk_open(const host_vk_desc *desc, host_vk **out, char error[HOST_VK_ER
     host->message = desc->message;
     host->user = desc->user;
     if (!open_instance(host, desc, error) || !choose_device(host, error) ||
-        !open_device(host, error) || !open_commands(host, error)) {
+        !open_device(host, desc, error) || !open_commands(host, error)) {
         host_vk_close(host);
         return false;
     }
@@ -505,19 +525,25 @@ static void full_barrier(VkCommandBuffer commands, const host_vk_image *image, V
                          VK_PIPELINE_STAGE_ALL_COMMANDS_BIT, 0, 0, NULL, 0, NULL, 1, &barrier);
 }
 
-static bool copy_to_buffer(host_vk *host, const host_vk_image *image, VkImageLayout layout,
-                           VkBuffer buffer) {
+/* Copies the image, which is in `layout` and stays so, into the buffer, or the other way round;
+ * then it had no content worth keeping. */
+static bool copy(host_vk *host, const host_vk_image *image, VkImageLayout layout, VkBuffer buffer,
+                 bool into) {
     VkCommandBuffer commands = host_vk_begin(host);
+    VkImageLayout meanwhile =
+        into ? VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL : VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL;
     if (!commands)
         return false;
     const VkBufferImageCopy region = {
         .imageSubresource = {image->aspect, 0, 0, 1},
         .imageExtent = {image->width, image->height, 1},
     };
-    full_barrier(commands, image, layout, VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL);
-    vkCmdCopyImageToBuffer(commands, image->image, VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL, buffer, 1,
-                           &region);
-    full_barrier(commands, image, VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL, layout);
+    full_barrier(commands, image, into ? VK_IMAGE_LAYOUT_UNDEFINED : layout, meanwhile);
+    if (into)
+        vkCmdCopyBufferToImage(commands, buffer, image->image, meanwhile, 1, &region);
+    else
+        vkCmdCopyImageToBuffer(commands, image->image, meanwhile, buffer, 1, &region);
+    full_barrier(commands, image, meanwhile, layout);
     const VkMemoryBarrier to_host = {
         .sType = VK_STRUCTURE_TYPE_MEMORY_BARRIER,
         .srcAccessMask = VK_ACCESS_TRANSFER_WRITE_BIT,
@@ -528,33 +554,55 @@ static bool copy_to_buffer(host_vk *host, const host_vk_image *image, VkImageLay
     return host_vk_submit_and_wait(host, commands);
 }
 
-bool host_vk_image_read(host_vk *host, const host_vk_image *image, VkImageLayout layout,
-                        void *pixels) {
-    size_t size = host_vk_texel_size(image->format) * image->width * image->height;
-    if (size == 0)
-        return false;
+/* A buffer in memory that is mapped. */
+typedef struct staging {
+    VkBuffer buffer;
+    VkDeviceMemory memory;
+    void *mapped;
+} staging;
+
+static bool make_staging(host_vk *host, size_t size, staging *out) {
     const VkBufferCreateInfo info = {
         .sType = VK_STRUCTURE_TYPE_BUFFER_CREATE_INFO,
         .size = size,
-        .usage = VK_BUFFER_USAGE_TRANSFER_DST_BIT,
+        .usage = VK_BUFFER_USAGE_TRANSFER_DST_BIT | VK_BUFFER_USAGE_TRANSFER_SRC_BIT,
     };
-    VkBuffer buffer = VK_NULL_HANDLE;
-    VkDeviceMemory memory = VK_NULL_HANDLE;
-    void *mapped = NULL;
-    bool ok = vkCreateBuffer(host->device, &info, NULL, &buffer) == VK_SUCCESS;
-    if (ok) {
-        VkMemoryRequirements needs;
-        vkGetBufferMemoryRequirements(host->device, buffer, &needs);
-        memory =
-            allocate(host, &needs,
-                     VK_MEMORY_PROPERTY_HOST_VISIBLE_BIT | VK_MEMORY_PROPERTY_HOST_COHERENT_BIT);
-        ok = memory && vkBindBufferMemory(host->device, buffer, memory, 0) == VK_SUCCESS &&
-             copy_to_buffer(host, image, layout, buffer) &&
-             vkMapMemory(host->device, memory, 0, VK_WHOLE_SIZE, 0, &mapped) == VK_SUCCESS;
-    }
+    VkMemoryRequirements needs;
+    memset(out, 0, sizeof *out);
+    if (size == 0 || vkCreateBuffer(host->device, &info, NULL, &out->buffer) != VK_SUCCESS)
+        return false;
+    vkGetBufferMemoryRequirements(host->device, out->buffer, &needs);
+    out->memory = allocate(
+        host, &needs, VK_MEMORY_PROPERTY_HOST_VISIBLE_BIT | VK_MEMORY_PROPERTY_HOST_COHERENT_BIT);
+    return out->memory &&
+           vkBindBufferMemory(host->device, out->buffer, out->memory, 0) == VK_SUCCESS &&
+           vkMapMemory(host->device, out->memory, 0, VK_WHOLE_SIZE, 0, &out->mapped) == VK_SUCCESS;
+}
+
+static void free_staging(host_vk *host, staging *s) {
+    vkDestroyBuffer(host->device, s->buffer, NULL);
+    vkFreeMemory(host->device, s->memory, NULL);
+}
+
+bool host_vk_image_read(host_vk *host, const host_vk_image *image, VkImageLayout layout,
+                        void *pixels) {
+    size_t size = host_vk_texel_size(image->format) * image->width * image->height;
+    staging s;
+    bool ok = make_staging(host, size, &s) && copy(host, image, layout, s.buffer, false);
     if (ok)
-        memcpy(pixels, mapped, size);
-    vkDestroyBuffer(host->device, buffer, NULL);
-    vkFreeMemory(host->device, memory, NULL);
+        memcpy(pixels, s.mapped, size);
+    free_staging(host, &s);
+    return ok;
+}
+
+bool host_vk_image_write(host_vk *host, const host_vk_image *image, VkImageLayout layout,
+                         const void *pixels) {
+    size_t size = host_vk_texel_size(image->format) * image->width * image->height;
+    staging s;
+    bool ok = make_staging(host, size, &s);
+    if (ok)
+        memcpy(s.mapped, pixels, size);
+    ok = ok && copy(host, image, layout, s.buffer, true);
+    free_staging(host, &s);
     return ok;
 }
