@@ -10,8 +10,12 @@
 /* Pixels that a click may move. */
 #define CLICK 4
 
+/* Whose event it is: there will be a few frames, as the user interface wants to answer it. */
 static view *of(GLFWwindow *glfw) {
-    return glfwGetWindowUserPointer(glfw);
+    view *v = glfwGetWindowUserPointer(glfw);
+    v->awake = 3;
+    trace(v, "event");
+    return v;
 }
 
 /* ---- keys -------------------------------------------------------------------------------- */
@@ -138,7 +142,6 @@ uint32_t input_keys(uint32_t i, const char **key, const char **help) {
 static void on_key(GLFWwindow *glfw, int key, int code, int action, int mods) {
     view *v = of(glfw);
     (void)code;
-    v->awake = 3;
     if (action == GLFW_RELEASE || ui_has_keyboard() || (mods & ~GLFW_MOD_CONTROL))
         return;
     for (size_t i = 0; i < sizeof keys / sizeof *keys; i++) {
@@ -179,7 +182,6 @@ static void click(view *v) {
 static void on_button(GLFWwindow *glfw, int button, int action, int mods) {
     view *v = of(glfw);
     pointer *p = &v->pointer;
-    v->awake = 3;
     if (action == GLFW_PRESS && p->button < 0 && v->open && !ui_has_pointer() &&
         is_inside(v, p->x, p->y)) {
         p->button = button;
@@ -213,7 +215,6 @@ static void on_move(GLFWwindow *glfw, double x, double y) {
     view *v = of(glfw);
     pointer *p = &v->pointer;
     double before[2] = {p->x, p->y};
-    v->awake = 3;
     to_pixels(v, &x, &y);
     p->x = x;
     p->y = y;
@@ -232,7 +233,6 @@ static void on_move(GLFWwindow *glfw, double x, double y) {
 static void on_scroll(GLFWwindow *glfw, double x, double y) {
     view *v = of(glfw);
     (void)x;
-    v->awake = 3;
     if (!v->open || ui_has_pointer() || !is_inside(v, v->pointer.x, v->pointer.y))
         return;
     orbit_dolly(&v->shot.camera, pow(1.15, y));
@@ -243,21 +243,17 @@ static void on_scroll(GLFWwindow *glfw, double x, double y) {
 /* ---- files and window -------------------------------------------------------------------- */
 
 static void on_drop(GLFWwindow *glfw, int count, const char **paths) {
-    view *v = of(glfw);
-    v->awake = 3;
-    loader_start(v->loader, paths, (uint32_t)count);
+    loader_start(of(glfw)->loader, paths, (uint32_t)count);
 }
 
 static void on_resize(GLFWwindow *glfw, int width, int height) {
-    view *v = of(glfw);
     (void)width;
     (void)height;
-    v->awake = 3;
-    v->dirty = true;
+    of(glfw)->dirty = true;
 }
 
 static void on_refresh(GLFWwindow *glfw) {
-    of(glfw)->awake = 3;
+    (void)of(glfw);
 }
 
 void input_attach(view *v) {

@@ -28,6 +28,8 @@ struct desktop {
     int said;              /* the viewer's standard output */
     char *text;            /* all of it */
     size_t length, read;   /* read: up to where viewer_hears has come */
+    size_t heard;          /* up to where events have been answered */
+    int x, y;              /* where the pointer is */
     char line[65536];
 };
 
@@ -124,15 +126,21 @@ static const char *find(desktop *d, const char *begin) {
     }
 }
 
-const char *viewer_hears(desktop *d, const char *begin) {
+/* NULL: it has not said so, *ended: nor will it. */
+static const char *hear(desktop *d, const char *begin, bool *ended) {
     double end = now() + PATIENCE;
     const char *rest = find(d, begin);
-    while (!rest && now() < end) {
-        bool on = take(d, 0.5);
+    *ended = false;
+    while (!rest && !*ended && now() < end) {
+        *ended = !take(d, 0.5);
         rest = find(d, begin);
-        if (!on && !rest)
-            break;
     }
+    return rest;
+}
+
+const char *viewer_hears(desktop *d, const char *begin) {
+    bool ended;
+    const char *rest = hear(d, begin, &ended);
     if (!rest)
         fail_msg("the viewer never said '%s'; it said:\n%s", begin, d->text ? d->text : "");
     return rest;
@@ -200,13 +208,23 @@ void viewer_start(desktop *d, const char *program, const char *const *arguments)
     }
     close(ends[1]);
     d->said = ends[0];
-    d->length = d->read = 0;
+    d->length = d->read = d->heard = 0;
+    d->x = d->y = -1;
     if (d->text)
         d->text[0] = '\0';
     viewer_hears(d, "ready");
     d->window = find_window(d);
     assert_true(d->window != 0);
     focus(d);
+}
+
+void viewer_kill(desktop *d) {
+    if (!d->viewer)
+        return;
+    kill(d->viewer, SIGKILL);
+    waitpid(d->viewer, NULL, 0);
+    close(d->said);
+    d->viewer = 0;
 }
 
 int viewer_end(desktop *d) {
@@ -218,6 +236,7 @@ int viewer_end(desktop *d) {
         kill(d->viewer, SIGKILL);
     waitpid(d->viewer, &status, 0);
     close(d->said);
+    d->viewer = 0;
     return WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
 }
 
@@ -249,32 +268,49 @@ void user_sees(desktop *d, const char *label, int place[4]) {
     }
 }
 
-/* Two frames of the user interface: the second one began after all that was sent. */
+/* Two frames of the user interface after an event: the second one has seen it through. What is
+ * said meanwhile may still be waited for. */
 static void wait_for_it(desktop *d) {
-    size_t read = d->read, before;
+    size_t read = d->read;
     XSync(d->display, False);
+    d->read = d->heard;
+    viewer_hears(d, "event");
+    d->heard = d->read;
+    bool ended = false; /* by that event */
+    for (int i = 0; i < 2 && !ended; i++) {
+        if (!hear(d, "tick", &ended) && !ended)
+            fail_msg("the viewer does not answer");
+    }
+    d->read = read;
+}
+
+/* Before an event is sent. */
+static void listen_anew(desktop *d) {
     do {
-        before = d->length;
+        d->heard = d->length;
         take(d, 0);
-    } while (d->length != before);
-    d->read = d->length;
-    viewer_hears(d, "tick");
-    viewer_hears(d, "tick");
-    d->read = read; /* what was said meanwhile may be waited for */
+    } while (d->length != d->heard);
 }
 
 void user_points(desktop *d, int x, int y) {
     int at_x, at_y;
     Window child;
+    if (x == d->x && y == d->y) /* no event would come */
+        return;
+    d->x = x;
+    d->y = y;
     XTranslateCoordinates(d->display, d->window, DefaultRootWindow(d->display), x, y, &at_x, &at_y,
                           &child);
+    listen_anew(d);
     XTestFakeMotionEvent(d->display, 0, at_x, at_y, CurrentTime);
     wait_for_it(d);
 }
 
 void user_presses(desktop *d, unsigned button, bool down) {
+    listen_anew(d);
     XTestFakeButtonEvent(d->display, button, down, CurrentTime);
-    wait_for_it(d); /* Dear ImGui of this version takes one event of a button in each frame */
+    if (button < 4 || down) /* the wheel says nothing when it is let go */
+        wait_for_it(d); /* Dear ImGui of this version takes one event of a button in each frame */
 }
 
 void user_clicks(desktop *d, const char *label) {
@@ -291,6 +327,7 @@ static void press_key(desktop *d, KeySym symbol) {
     bool shifted = XkbKeycodeToKeysym(d->display, code, 0, 0) != symbol;
     if (shifted)
         XTestFakeKeyEvent(d->display, shift, True, CurrentTime);
+    listen_anew(d);
     XTestFakeKeyEvent(d->display, code, True, CurrentTime);
     wait_for_it(d);
     XTestFakeKeyEvent(d->display, code, False, CurrentTime);

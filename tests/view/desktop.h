@@ -17,6 +17,8 @@ void desktop_stop(desktop *d);
 void viewer_start(desktop *d, const char *program, const char *const *arguments);
 /* Waits for its end; returns its exit code, 128 + signal when it was killed. */
 int viewer_end(desktop *d);
+/* After a test that has failed in between. */
+void viewer_kill(desktop *d);
 
 /* The rest of the next line that begins with `begin`; fails the test after 60 s. Valid until the
  * next call. */

@@ -241,6 +241,12 @@ static int set_up(void **state) {
     return mkdtemp(folder) && chdir(folder) == 0 ? 0 : -1;
 }
 
+static int clean_up(void **state) {
+    fixture *f = *state;
+    viewer_kill(f->desktop);
+    return 0;
+}
+
 static int tear_down(void **state) {
     fixture *f = *state;
     desktop_stop(f->desktop);
@@ -256,11 +262,11 @@ int main(int argc, char **argv) {
     viewer = argv[1];
     program = argv[2];
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test_prestate(plays_and_stops, &f),
-        cmocka_unit_test_prestate(turns_and_resizes, &f),
-        cmocka_unit_test_prestate(saves_lines, &f),
-        cmocka_unit_test_prestate(shows_what_the_program_writes, &f),
-        cmocka_unit_test_prestate(opens_what_is_dropped, &f),
+        {"plays_and_stops", plays_and_stops, NULL, clean_up, &f},
+        {"turns_and_resizes", turns_and_resizes, NULL, clean_up, &f},
+        {"saves_lines", saves_lines, NULL, clean_up, &f},
+        {"shows_what_the_program_writes", shows_what_the_program_writes, NULL, clean_up, &f},
+        {"opens_what_is_dropped", opens_what_is_dropped, NULL, clean_up, &f},
     };
     void *state = &f;
     if (argc > 4) /* those of this name */
