@@ -107,28 +107,29 @@ static const struct key_row {
     int key;
     const char *name, *help;
     void (*run)(view *v);
-    bool open; /* needs an open document */
+    bool open;    /* needs an open document */
+    bool repeats; /* while it is held down */
 } keys[] = {
-    {GLFW_KEY_SPACE, "Space", "play, pause", player_toggle, true},
-    {GLFW_KEY_LEFT, "Left", "a step back in time", back, true},
-    {GLFW_KEY_RIGHT, "Right", "a step forward", forth, true},
-    {GLFW_KEY_COMMA, ",", "slower", slower, true},
-    {GLFW_KEY_PERIOD, ".", "faster", faster, true},
-    {GLFW_KEY_L, "L", "play again and again, or once", loop, true},
-    {GLFW_KEY_F, "F", "fit everything into the picture", stage_fit, true},
-    {GLFW_KEY_HOME, "Home", "the first view", home, true},
-    {GLFW_KEY_1, "1", "from above (axial)", axial, true},
-    {GLFW_KEY_2, "2", "from the front (coronal)", coronal, true},
-    {GLFW_KEY_3, "3", "from the left (sagittal)", sagittal, true},
-    {GLFW_KEY_4, "4", "from a corner", iso, true},
-    {GLFW_KEY_O, "O", "perspective or orthographic", project, true},
-    {GLFW_KEY_G, "G", "ground", ground, true},
-    {GLFW_KEY_X, "X", "axes", axes, true},
-    {GLFW_KEY_H, "H", "hide or show the panels", panels, false},
-    {GLFW_KEY_S, "S", "save the picture", save, true},
-    {GLFW_KEY_C, "C", "copy the command line of this picture", copy, true},
-    {GLFW_KEY_ESCAPE, "Esc", "cancel what is being opened; select nothing", forget, false},
-    {GLFW_KEY_Q, "Q", "quit", quit, false},
+    {GLFW_KEY_SPACE, "Space", "play, pause", player_toggle, true, false},
+    {GLFW_KEY_LEFT, "Left", "a step back in time", back, true, true},
+    {GLFW_KEY_RIGHT, "Right", "a step forward", forth, true, true},
+    {GLFW_KEY_COMMA, ",", "slower", slower, true, true},
+    {GLFW_KEY_PERIOD, ".", "faster", faster, true, true},
+    {GLFW_KEY_L, "L", "play again and again, or once", loop, true, false},
+    {GLFW_KEY_F, "F", "fit everything into the picture", stage_fit, true, false},
+    {GLFW_KEY_HOME, "Home", "the first view", home, true, false},
+    {GLFW_KEY_1, "1", "from above (axial)", axial, true, false},
+    {GLFW_KEY_2, "2", "from the front (coronal)", coronal, true, false},
+    {GLFW_KEY_3, "3", "from the left (sagittal)", sagittal, true, false},
+    {GLFW_KEY_4, "4", "from a corner", iso, true, false},
+    {GLFW_KEY_O, "O", "perspective or orthographic", project, true, false},
+    {GLFW_KEY_G, "G", "ground", ground, true, false},
+    {GLFW_KEY_X, "X", "axes", axes, true, false},
+    {GLFW_KEY_H, "H", "hide or show the panels", panels, false, false},
+    {GLFW_KEY_S, "S", "save the picture", save, true, false},
+    {GLFW_KEY_C, "C", "copy the command line of this picture", copy, true, false},
+    {GLFW_KEY_ESCAPE, "Esc", "cancel what is being opened; select nothing", forget, false, false},
+    {GLFW_KEY_Q, "Q", "quit", quit, false, false},
 };
 
 uint32_t input_keys(uint32_t i, const char **key, const char **help) {
@@ -145,7 +146,8 @@ static void on_key(GLFWwindow *glfw, int key, int code, int action, int mods) {
     if (action == GLFW_RELEASE || ui_has_keyboard() || (mods & ~GLFW_MOD_CONTROL))
         return;
     for (size_t i = 0; i < sizeof keys / sizeof *keys; i++) {
-        if (keys[i].key == key && (v->open || !keys[i].open))
+        if (keys[i].key == key && (v->open || !keys[i].open) &&
+            (action == GLFW_PRESS || keys[i].repeats))
             keys[i].run(v);
     }
 }
@@ -184,14 +186,16 @@ static void on_button(GLFWwindow *glfw, int button, int action, int mods) {
     pointer *p = &v->pointer;
     if (action == GLFW_PRESS && p->button < 0 && v->open && !ui_has_pointer() &&
         is_inside(v, p->x, p->y)) {
+        v->dividing = button == GLFW_MOUSE_BUTTON_LEFT && compare_grabs(v, p->x);
         p->button = button;
         p->shift = (mods & GLFW_MOD_SHIFT) != 0;
         p->moved = false;
         p->pressed_at[0] = p->x;
         p->pressed_at[1] = p->y;
     } else if (action == GLFW_RELEASE && button == p->button) {
-        if (!p->moved && button == GLFW_MOUSE_BUTTON_LEFT && v->open)
+        if (!p->moved && button == GLFW_MOUSE_BUTTON_LEFT && v->open && !v->dividing)
             click(v);
+        v->dividing = false;
         p->button = -1;
     }
 }
@@ -227,7 +231,10 @@ static void on_move(GLFWwindow *glfw, double x, double y) {
         before[1] = p->pressed_at[1];
     }
     p->moved = true;
-    drag(v, x - before[0], y - before[1]);
+    if (v->dividing)
+        compare_divide(v, x);
+    else
+        drag(v, x - before[0], y - before[1]);
 }
 
 static void on_scroll(GLFWwindow *glfw, double x, double y) {

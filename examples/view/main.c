@@ -6,6 +6,7 @@
 
 #include "report.h"
 
+#include <math.h>
 #include <stdarg.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -21,6 +22,7 @@ static const char help[] =
     "  --backend gl|vk     OpenGL or Vulkan (gl)\n"
     "  --window WxH        size of the window (1280x800)\n"
     "  --scale N           of the user interface (the monitor's)\n"
+    "  --compare           OpenGL and Vulkan side by side\n"
     "  --no-vsync          do not wait for the monitor\n"
     "  --validate          with the Khronos layer (Vulkan)\n"
     "  --trace             say on standard output what happens, for tests\n"
@@ -30,7 +32,7 @@ typedef struct arguments {
     const char *backend;
     int width, height;
     float scale;
-    bool vsync, validate, trace, help;
+    bool vsync, validate, trace, compare, help;
     const char **words; /* owned: the rest */
     uint32_t count;
 } arguments;
@@ -73,6 +75,8 @@ static int take(arguments *a, const char *word, const char *value) {
         return a->validate = true, 1;
     if (strcmp(word, "--trace") == 0)
         return a->trace = true, 1;
+    if (strcmp(word, "--compare") == 0)
+        return a->compare = true, 1;
     if (strcmp(word, "--help") == 0 || strcmp(word, "-h") == 0)
         return a->help = true, 1;
     if (strcmp(word, "--backend") == 0 && value &&
@@ -146,6 +150,7 @@ static float monitor_scale(GLFWwindow *glfw) {
 static bool open(view *v, const arguments *a) {
     ui_desc desc = {a->scale, a->trace ? on_placed : NULL, v};
     v->trace = a->trace;
+    v->compare_first = a->compare;
     v->window.backend = strcmp(a->backend, "vk") == 0 ? &window_vk_backend : &window_gl_backend;
     v->window.vsync = a->vsync;
     v->window.debug = a->validate;
@@ -153,6 +158,10 @@ static bool open(view *v, const arguments *a) {
     v->steady.on = true;
     v->steady.wanted = 100;
     v->steady.scale = 1;
+    v->comparison.divider = 0.5;
+    v->comparison.gain = 16;
+    v->comparison.looks[1].backend = 1;
+    snprintf(v->comparison.image, sizeof v->comparison.image, "out");
     v->shot_size[0] = 1280;
     v->shot_size[1] = 960;
     snprintf(v->shot_path, sizeof v->shot_path, "picture.png");
@@ -188,8 +197,12 @@ static void take_document(view *v) {
         return;
     v->awake = 3;
     v->player.playing = false;
-    if (stage_open(v, doc))
+    if (stage_open(v, doc)) {
         title(v);
+        if (v->compare_first)
+            v->compare = compare_start(v->doc, &v->listener);
+    }
+    v->compare_first = false;
 }
 
 /* A view that moves is drawn small enough to take the time that is wanted, and in full once it
@@ -202,16 +215,46 @@ static void keep_steady(view *v, double now) {
     s->moving = moving;
 }
 
+/* The next size after a frame that took so long. Few sizes, as each one makes images anew. */
+static void adapt(view *v, double ms) {
+    static const float scales[] = {1, 0.75f, 0.5f, 0.35f, 0.25f};
+    steady *s = &v->steady;
+    int at = 0, last = (int)(sizeof scales / sizeof *scales) - 1;
+    double wanted = (double)s->wanted;
+    while (at < last && scales[at] > s->scale)
+        at++;
+    if (ms > 1.2 * wanted && at < last)
+        at++;
+    else if (at > 0 && ms * pow((double)(scales[at - 1] / scales[at]), 2) < 0.8 * wanted)
+        at--;
+    s->scale = scales[at];
+}
+
 static bool draw(view *v) {
     window *w = &v->window;
+    uint32_t before = v->frames;
+    double begin = glfwGetTime();
     if (!w->backend->begin(w))
         return false;
     ui_begin();
     panel_draw(v);
     ui_end();
-    stage_draw(v);
-    stage_show(v);
+    if (v->compare && v->open) {
+        compare_draw(v);
+        compare_show(v);
+    } else {
+        stage_draw(v);
+        stage_show(v);
+    }
     w->backend->end(w);
+    double now = glfwGetTime();
+    if (v->frames != before) { /* the picture was drawn */
+        v->frame_ms =
+            1e3 * (now - (v->steady.moving && v->steady.frame > 0 ? v->steady.frame : begin));
+        if (v->steady.moving && v->steady.frame > 0)
+            adapt(v, v->frame_ms);
+    }
+    v->steady.frame = v->steady.moving && v->frames != before ? now : 0;
     trace(v, "tick");
     return true;
 }
@@ -221,14 +264,16 @@ static bool wait(view *v) {
     char text[MESSAGE_SIZE];
     float part;
     bool busy = loader_busy(v->loader, text, &part);
+    bool compared = v->compare && compare_busy(v->compare);
     if (player_advance(v, glfwGetTime()) || v->steady.moving || v->dirty || v->awake > 0)
         glfwPollEvents();
     else
-        glfwWaitEventsTimeout(busy ? 0.05 : 0.5);
+        glfwWaitEventsTimeout(busy || compared ? 0.05 : 0.5);
     take_document(v);
     trace_messages(v);
     keep_steady(v, glfwGetTime());
-    bool news = busy || v->player.playing || v->steady.moving || v->dirty || v->awake > 0;
+    bool news =
+        busy || compared || v->player.playing || v->steady.moving || v->dirty || v->awake > 0;
     v->awake -= v->awake > 0;
     return news;
 }

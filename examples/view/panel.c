@@ -6,6 +6,7 @@
 #include "orbit.h"
 #include "scene.h"
 
+#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -258,11 +259,60 @@ static void picture_tab(view *v) {
 
 /* ---- all of it --------------------------------------------------------------------------- */
 
-static void picked_text(const view *v) {
+/* The blur of a surface leaves what is as near as the picked place sharp. */
+static void focus_here(view *v) {
+    double forward[3], depth = 0, length = 0;
+    float near = 0.1f * v->shot.sphere[3];
+    for (int k = 0; k < 3; k++) {
+        forward[k] = v->shot.camera.center[k] - v->shot.camera.eye[k];
+        length += forward[k] * forward[k];
+    }
+    for (int k = 0; k < 3; k++)
+        depth += (v->picked.at[k] - v->shot.camera.eye[k]) * forward[k] / sqrt(length);
+    document_set(v->doc, 0, VSF_SETTING_ID_focus, 1);
+    document_set(v->doc, 0, VSF_SETTING_ID_focus_near, (float)depth - near);
+    document_set(v->doc, 0, VSF_SETTING_ID_focus_far, (float)depth + near);
+    stage_changed(v);
+}
+
+/* What was clicked: words below, a mark in the picture. */
+static void picked_text(view *v, window_rect place) {
+    float height = 9 * ui_text_height();
     if (v->picked.kind == PICKED_NOTHING)
         return;
+    ui_panel("Picked", (window_rect){place.x, place.y + place.height - (int)height, place.width,
+                                     (int)height});
     ui_line();
+    if (ui_small_button("Look there")) {
+        for (int k = 0; k < 3; k++) {
+            v->shot.camera.eye[k] += v->picked.at[k] - v->shot.camera.center[k];
+            v->shot.camera.center[k] = v->picked.at[k];
+        }
+        v->dirty = true;
+    }
+    ui_help("turn around this place");
+    ui_same_line();
+    if (v->doc->command == CLI_SURFACE && ui_small_button("Focus here"))
+        focus_here(v);
+    ui_same_line();
+    if (ui_small_button("Forget")) {
+        memset(&v->picked, 0, sizeof v->picked);
+        stage_select(v);
+    }
     ui_text_wrapped(v->picked.text);
+    ui_panel_end();
+}
+
+static void mark_picked(const view *v) {
+    float at[2], r = 7 * ui_scale();
+    if (v->picked.kind == PICKED_NOTHING || !stage_place(v, v->picked.at, at) ||
+        at[0] < (float)v->picture.x || at[1] > (float)(v->picture.y + v->picture.height))
+        return;
+    for (int i = 0; i < 4; i++) {
+        float x = i < 2 ? (i ? r : -r) : 0, y = i < 2 ? 0 : (i > 2 ? r : -r);
+        ui_draw_line(true, at[0] + x, at[1] + y, at[0] + 0.3f * x, at[1] + 0.3f * y, 0xff1030f0,
+                     2 * ui_scale());
+    }
 }
 
 static void left(view *v, window_rect place) {
@@ -284,9 +334,16 @@ static void left(view *v, window_rect place) {
             picture_tab(v);
             ui_tab_end();
         }
+        if (v->open && ui_tab("Compare")) {
+            panel_compare(v);
+            ui_tab_end();
+        }
+        if (v->open && v->doc->command == CLI_VESSEL && ui_tab("Tree")) {
+            panel_tree(v);
+            ui_tab_end();
+        }
         ui_tabs_end();
     }
-    picked_text(v);
     ui_panel_end();
 }
 
@@ -336,12 +393,18 @@ void panel_draw(view *v) {
     v->picture = all;
     if (shown) {
         v->picture = (window_rect){width, 0, all.width - width, all.height - timeline - line};
-        left(v, (window_rect){0, 0, width, all.height});
+        bool any = v->picked.kind != PICKED_NOTHING;
+        int below = any ? (int)(9 * ui_text_height()) : 0;
+        left(v, (window_rect){0, 0, width, all.height - below});
+        picked_text(v, (window_rect){0, 0, width, all.height});
         if (timeline)
             player_panel(v, (window_rect){width, v->picture.height, v->picture.width, timeline});
         status(v, (window_rect){width, all.height - line, v->picture.width, line});
     }
     if (memcmp(&before, &v->picture, sizeof before) != 0)
         v->dirty = true;
+    mark_picked(v);
+    if (v->compare)
+        compare_marks(v);
     said(v);
 }

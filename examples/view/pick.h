@@ -18,5 +18,7 @@ typedef struct picked {
  * picture's height. */
 void pick_at(const document *doc, const cli_shot *shot, double x, double y, double near,
              picked *out);
+/* A node of a tree, as if it had been clicked. */
+void pick_node(const document *doc, uint32_t node, picked *out);
 
 #endif

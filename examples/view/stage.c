@@ -30,6 +30,9 @@ static void find_bounds(view *v) {
 }
 
 void stage_close(view *v) {
+    compare_stop(v->compare);
+    v->compare = NULL;
+    v->comparison.ready = false;
     if (v->open) {
         v->window.backend->wait(&v->window);
         v->session.vk = NULL; /* the window's */
@@ -267,9 +270,7 @@ void stage_draw(view *v) {
         v->unfitted = false;
     }
     v->dirty = false;
-    double begin = glfwGetTime();
     bool ok = render(v, &shot, small);
-    v->frame_ms = 1e3 * (glfwGetTime() - begin);
     v->frames++;
     trace(v, "frame %u %ux%u %s", v->frames, shot.width, shot.height, ok ? "ok" : "failed");
 }
@@ -299,8 +300,11 @@ void stage_changed(view *v) {
 
 void stage_time(view *v) {
     lao_object_desc update;
-    if (v->open && v->doc->command == CLI_SURFACE &&
-        cli_wall_time(&v->doc->wall, (double)v->shot.time, &update))
+    bool surface = v->open && v->doc->command == CLI_SURFACE;
+    compare_lock(v->compare);
+    bool changed = surface && cli_wall_time(&v->doc->wall, (double)v->shot.time, &update);
+    compare_unlock(v->compare);
+    if (changed)
         lao_object_update(v->session.context, v->session.sets[0].object, &update);
     v->dirty = true;
 }
@@ -326,6 +330,28 @@ void stage_fit(view *v) {
         pose->center[k] += v->doc->scene->origin[k];
     }
     v->dirty = true;
+}
+
+bool stage_place(const view *v, const double at[3], float place[2]) {
+    cli_shot shot = v->shot;
+    float clip[16], p[4];
+    if (!v->open || v->picture.width < 1 || v->picture.height < 1)
+        return false;
+    shot.width = (uint32_t)v->picture.width;
+    shot.height = (uint32_t)v->picture.height;
+    cli_shot_aim(v->doc->scene, &shot);
+    multiply(shot.projection, shot.view, clip);
+    for (int i = 0; i < 4; i++) {
+        double sum = (double)clip[12 + i];
+        for (int k = 0; k < 3; k++)
+            sum += (double)clip[4 * k + i] * (at[k] - v->doc->scene->origin[k]);
+        p[i] = (float)sum;
+    }
+    if (!(p[3] > 0))
+        return false;
+    place[0] = (float)v->picture.x + (0.5f + 0.5f * p[0] / p[3]) * (float)v->picture.width;
+    place[1] = (float)v->picture.y + (0.5f - 0.5f * p[1] / p[3]) * (float)v->picture.height;
+    return true;
 }
 
 /* ---- selection --------------------------------------------------------------------------- */

@@ -3,6 +3,7 @@
 #ifndef LINEAO_VIEW_VIEW_H
 #define LINEAO_VIEW_VIEW_H
 
+#include "compare.h"
 #include "document.h"
 #include "loader.h"
 #include "pick.h"
@@ -32,7 +33,18 @@ typedef struct pointer {
     bool moved, shift;          /* since it was pressed */
 } pointer;
 
-struct compare;
+/* How two pictures are shown side by side. */
+typedef struct comparison {
+    compare_look looks[2];
+    char image[COMPARE_NAME];
+    uint32_t level;
+    bool difference, differed, stale; /* stale: the difference is to be made again */
+    float gain;
+    double divider; /* in parts of the picture's width */
+    bool ready;     /* both are in the window's slots */
+    int size[2][2];
+    int64_t bits; /* that differ; -1: sizes do */
+} comparison;
 
 typedef struct view {
     window window;
@@ -61,7 +73,10 @@ typedef struct view {
     pointer pointer;
     picked picked;
     lao_lines picked_lines; /* the selected line once more, on top */
-    struct compare *compare;
+    compare *compare;       /* NULL: there is one picture */
+    comparison comparison;
+    bool compare_first; /* begin with it */
+    bool dividing;      /* the pointer moves the divider */
 
     camera_pose bookmarks[BOOKMARKS];
     bool bookmarked[BOOKMARKS];
@@ -92,6 +107,8 @@ bool stage_save(view *v, const char *path, uint32_t width, uint32_t height);
 void stage_select(view *v);
 /* Opens the same document again with what was edited. */
 void stage_reload(view *v);
+/* Where a place (mm, absolute) is in the window. False: behind the eye. */
+bool stage_place(const view *v, const double at[3], float place[2]);
 /* Of the whole document: its middle (absolute) and the axis that is up. */
 void stage_up(const view *v, double axis[3]);
 
@@ -118,6 +135,18 @@ void player_panel(view *v, window_rect place);
 /* The user interface of a frame; says where the picture goes. */
 void panel_draw(view *v);
 void panel_settings(view *v);
+void panel_tree(view *v);
+
+/* ---- panel_compare.c ---- */
+
+void panel_compare(view *v);
+void compare_end(view *v);
+void compare_draw(view *v);
+void compare_show(view *v);
+void compare_marks(view *v);
+/* Is the divider at that place of the window? */
+bool compare_grabs(const view *v, double x);
+void compare_divide(view *v, double x);
 
 /* One line on standard output for a test, unless nobody listens. */
 void trace(const view *v, const char *format, ...) CLI_PRINTF(2, 3);

@@ -16,7 +16,15 @@
 #endif
 #include <GLFW/glfw3.h>
 
-enum { SLOT_REST, SLOT_MOVING, SLOT_CANVASES, SLOT_LEFT = SLOT_CANVASES, SLOT_RIGHT, SLOT_COUNT };
+enum {
+    SLOT_REST,
+    SLOT_MOVING,
+    SLOT_CANVASES,
+    SLOT_LEFT = SLOT_CANVASES,
+    SLOT_RIGHT,
+    SLOT_DIFFERENCE,
+    SLOT_COUNT
+};
 
 /* Pixels; (0, 0) is the top left corner. */
 typedef struct window_rect {
