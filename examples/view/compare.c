@@ -25,7 +25,7 @@ typedef struct side {
     compare_result made[2]; /* [0]: being made by the thread; [1]: done, under the lock */
     uint32_t done;          /* serial of made[1] */
     cli_session session;    /* of the thread alone, as all that follows */
-    bool open;
+    bool open, fresh;       /* fresh: it has drawn nothing, and a first frame builds shaders */
     int backend;
     float time;
     lao_settings *settings;
@@ -76,6 +76,7 @@ static bool open_session(side *s, const wish *w) {
     pthread_mutex_unlock(&s->compare->data);
     if (!ok)
         close_session(s);
+    s->fresh = ok;
     return ok;
 }
 
@@ -148,6 +149,9 @@ static void draw(side *s, const wish *w) {
         return;
     take_settings(s, w);
     out->pass_count = COMPARE_PASSES;
+    if (s->fresh)
+        cli_session_render(&s->session, &w->shot, 0);
+    s->fresh = false;
     if (lao_view_resize(s->session.context, s->session.view, w->shot.width, w->shot.height) !=
             LAO_OK ||
         !cli_session_render(&s->session, &w->shot, LAO_FRAME_TIMINGS) || !read_image(s, w, out) ||
@@ -261,7 +265,12 @@ void compare_ask(compare *c, const cli_shot *shot, const compare_look looks[2], 
     pthread_mutex_unlock(&c->lock);
 }
 
-bool compare_take(compare *c, const compare_result *results[2]) {
+void compare_results(const compare *c, const compare_result *results[2]) {
+    results[0] = &c->shown[0];
+    results[1] = &c->shown[1];
+}
+
+bool compare_take(compare *c) {
     pthread_mutex_lock(&c->lock);
     uint32_t done = c->sides[0].done;
     bool news = done == c->sides[1].done && done != c->taken;
@@ -273,8 +282,6 @@ bool compare_take(compare *c, const compare_result *results[2]) {
     if (news)
         c->taken = done;
     pthread_mutex_unlock(&c->lock);
-    results[0] = &c->shown[0];
-    results[1] = &c->shown[1];
     return news;
 }
 

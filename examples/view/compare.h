@@ -32,8 +32,10 @@ void compare_stop(compare *c);
 /* Asks both sides for an image ("out": the picture) of a shot; an earlier wish is dropped. */
 void compare_ask(compare *c, const cli_shot *shot, const compare_look looks[2], const char *image,
                  uint32_t level);
-/* Is there a new result on both sides? It stays until the next call. */
-bool compare_take(compare *c, const compare_result *results[2]);
+/* Takes a new result, when both sides have one. False: there is none. */
+bool compare_take(compare *c);
+/* What was taken last. */
+void compare_results(const compare *c, const compare_result *results[2]);
 bool compare_busy(compare *c);
 /* Around changes of the document's data. */
 void compare_lock(compare *c);

@@ -239,6 +239,7 @@ static bool draw(view *v) {
     ui_begin();
     panel_draw(v);
     ui_end();
+    stage_fit_first(v);
     if (v->compare && v->open) {
         compare_draw(v);
         compare_show(v);

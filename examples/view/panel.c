@@ -272,7 +272,7 @@ static void focus_here(view *v) {
     document_set(v->doc, 0, VSF_SETTING_ID_focus, 1);
     document_set(v->doc, 0, VSF_SETTING_ID_focus_near, (float)depth - near);
     document_set(v->doc, 0, VSF_SETTING_ID_focus_far, (float)depth + near);
-    stage_changed(v);
+    stage_changed(v, false);
 }
 
 /* What was clicked: words below, a mark in the picture. */
@@ -330,7 +330,7 @@ static void left(view *v, window_rect place) {
             view_tab(v);
             ui_tab_end();
         }
-        if (v->open && ui_tab("Picture")) {
+        if (v->open && ui_tab("Save")) {
             picture_tab(v);
             ui_tab_end();
         }
@@ -373,14 +373,26 @@ static void said(view *v) {
 
 static void status(const view *v, window_rect place) {
     char text[256];
+    char moving[64];
     uint32_t samples = 1;
+    snprintf(moving, sizeof moving, ", drawn at %.0f %% while it moves",
+             100 * (double)v->steady.scale);
     bool small = v->steady.on && v->steady.moving;
     if (v->open && !small)
         samples = (uint32_t)lao_settings_filled(&v->doc->scene->sets[0].settings).supersampling;
     ui_panel("Status", place);
-    snprintf(text, sizeof text, "%s   %d x %d%s, %u samples per pixel   last frame %.0f ms",
-             v->window.backend->name, v->picture.width, v->picture.height,
-             small ? " (coarse while it moves)" : "", samples * samples, v->frame_ms);
+    if (v->compare)
+        snprintf(text, sizeof text, "%s   two pictures of %d x %d", v->window.backend->name,
+                 v->picture.width, v->picture.height);
+    else
+        snprintf(text, sizeof text, "%s   %d x %d%s, %u sample%s per pixel   last frame %.0f ms",
+                 v->window.backend->name, v->picture.width, v->picture.height, small ? moving : "",
+                 samples * samples, samples > 1 ? "s" : "", v->frame_ms);
+    if (v->open && player_timed(v)) {
+        size_t used = strlen(text);
+        snprintf(text + used, sizeof text - used, "   time %.0f ms, %.3g ms in a second",
+                 (double)v->shot.time, v->player.speed);
+    }
     ui_text(v->open ? text : "nothing is open");
     ui_panel_end();
 }

@@ -45,7 +45,8 @@ static void choose_image(view *v) {
     ui_help("any image of the frame graph; out is the picture. Numbers are shown between their "
             "least and greatest");
     ui_width(-1);
-    if (ui_slider_int("##level", &level, 0, 7)) {
+    if (ui_combo("##level", &level,
+                 "level 0|level 1|level 2|level 3|level 4|level 5|level 6|level 7")) {
         c->level = (uint32_t)level;
         v->dirty = true;
     }
@@ -123,7 +124,7 @@ void panel_compare(view *v) {
         ui_width(-1);
         c->stale = ui_slider("##gain", &c->gain, 1, 255, "x %.0f") || c->stale;
     }
-    compare_take(v->compare, r);
+    compare_results(v->compare, r);
     if (compare_busy(v->compare))
         ui_text("drawing ...");
     else if (!r[0]->pixels || !r[1]->pixels)
@@ -152,7 +153,8 @@ void compare_draw(view *v) {
         compare_ask(v->compare, &shot, c->looks, c->image, c->level);
         v->dirty = false;
     }
-    bool news = compare_take(v->compare, r);
+    bool news = compare_take(v->compare);
+    compare_results(v->compare, r);
     if (news) {
         c->ready = r[0]->pixels && r[1]->pixels;
         c->bits = compare_bits(r[0], r[1]);

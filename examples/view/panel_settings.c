@@ -63,7 +63,7 @@ static void changed(view *v, uint32_t index, int setting) {
           (double)document_value(v->doc, index, setting));
     if (document_reloads(v->doc, index, setting))
         stage_reload(v);
-    stage_changed(v);
+    stage_changed(v, strcmp(v->doc->settings[index].module->settings[setting].name, "width") == 0);
 }
 
 static void row_of(view *v, uint32_t index, int setting) {
@@ -101,7 +101,7 @@ static void reset_all(view *v) {
                 document_reset(v->doc, i, (int)k);
         }
     }
-    stage_changed(v);
+    stage_changed(v, true);
 }
 
 void panel_settings(view *v) {

@@ -93,7 +93,6 @@ static void draw_timeline(view *v, double first, double length) {
 }
 
 void player_panel(view *v, window_rect place) {
-    char text[96];
     double first, length;
     bool shown = document_shows_time(v->doc) || v->doc->command == CLI_SURFACE;
     player_range(v, &first, &length);
@@ -124,14 +123,10 @@ void player_panel(view *v, window_rect place) {
         if (ui_toggle("Trails", &shown)) {
             document_show_time(v->doc, shown);
             v->player.playing = v->player.playing && shown;
-            stage_changed(v);
+            stage_changed(v, false);
         }
         ui_help("show the lines around the time alone, or all of them");
     }
-    ui_same_line();
-    snprintf(text, sizeof text, "%.0f ms, %.3g ms per second", (double)v->shot.time,
-             v->player.speed);
-    ui_text(text);
     draw_timeline(v, first, length);
     ui_panel_end();
 }

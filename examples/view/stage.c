@@ -223,6 +223,8 @@ static bool render(view *v, cli_shot *shot, bool small) {
         free(settings);
         return false;
     }
+    memset(&color, 0, sizeof color);
+    memset(&depth, 0, sizeof depth);
     cli_shot_aim(v->doc->scene, shot);
     multiply(shot->projection, shot->view, clip);
     make_axes(v, clip, boxes);
@@ -255,6 +257,14 @@ static bool render(view *v, cli_shot *shot, bool small) {
     return ok;
 }
 
+void stage_fit_first(view *v) {
+    if (!v->open || !v->unfitted || v->picture.width < 1 || v->picture.height < 1)
+        return;
+    stage_fit(v);
+    v->fitted.camera = v->shot.camera;
+    v->unfitted = false;
+}
+
 void stage_draw(view *v) {
     cli_shot shot = v->shot;
     bool small = v->steady.on && v->steady.moving;
@@ -263,12 +273,6 @@ void stage_draw(view *v) {
         return;
     shot.width = (uint32_t)fmax(1, round(v->picture.width * scale));
     shot.height = (uint32_t)fmax(1, round(v->picture.height * scale));
-    if (v->unfitted) { /* the words ask for no camera: the first one fits the window */
-        stage_fit(v);
-        v->fitted.camera = v->shot.camera;
-        shot.camera = v->shot.camera;
-        v->unfitted = false;
-    }
     v->dirty = false;
     bool ok = render(v, &shot, small);
     v->frames++;
@@ -284,13 +288,13 @@ void stage_show(view *v) {
         v->window.backend->show(&v->window, small ? SLOT_MOVING : SLOT_REST, from, v->picture);
 }
 
-void stage_changed(view *v) {
+void stage_changed(view *v, bool reach) {
     cli_shot fresh;
     camera_pose camera = v->shot.camera;
     float time = v->shot.time;
     if (!v->open)
         return;
-    if (cli_shot_make(&v->doc->options, v->doc->scene, &fresh)) { /* a width may reach farther */
+    if (reach && cli_shot_make(&v->doc->options, v->doc->scene, &fresh)) {
         v->shot = fresh;
         v->shot.camera = camera;
         v->shot.time = time;
@@ -358,10 +362,10 @@ bool stage_place(const view *v, const double at[3], float place[2]) {
 
 void stage_select(view *v) {
     lao_lines_desc desc;
+    v->dirty = v->dirty || v->picked_lines.id || v->picked.kind == PICKED_LINE;
     if (v->picked_lines.id)
         lao_lines_destroy(v->session.context, v->picked_lines);
     v->picked_lines.id = 0;
-    v->dirty = true;
     if (v->picked.kind != PICKED_LINE)
         return;
     const io_lines *lines = &v->doc->scene->sets[v->picked.set].lines;

@@ -98,9 +98,11 @@ void stage_draw(view *v);
 void stage_show(view *v);
 /* The time has changed: what depends on it goes up. */
 void stage_time(view *v);
-/* Settings have changed; `width`: the picture's depth range may have. */
-void stage_changed(view *v);
+/* Settings have changed; `reach`: one of those that say how far the scene reaches. */
+void stage_changed(view *v, bool reach);
 void stage_fit(view *v);
+/* The same for the first picture, where the words ask for no camera. */
+void stage_fit_first(view *v);
 /* Writes the picture as `lineao render` would. False: reported. */
 bool stage_save(view *v, const char *path, uint32_t width, uint32_t height);
 /* Shows the picked line on top. */

@@ -19,7 +19,7 @@
 
 #include <cmocka.h>
 
-enum { MOST_LINES = 65536, PATIENCE = 60, WIDGETS = 512 };
+enum { MOST_LINES = 65536, PATIENCE = 120, WIDGETS = 512 };
 
 struct desktop {
     pid_t server, viewer;

@@ -20,8 +20,8 @@ int viewer_end(desktop *d);
 /* After a test that has failed in between. */
 void viewer_kill(desktop *d);
 
-/* The rest of the next line that begins with `begin`; fails the test after 60 s. Valid until the
- * next call. */
+/* The rest of the next line that begins with `begin`; fails the test after two minutes. Valid until
+ * the next call. */
 const char *viewer_hears(desktop *d, const char *begin);
 /* Waits until nothing has been said for that long. */
 void viewer_rests(desktop *d, double seconds);

@@ -52,10 +52,7 @@ static const char *const flow[] = {"render",  "--scene", "flow",   "--lines", "1
 
 /* ---- handling ----------------------------------------------------------------------------- */
 
-static void plays_and_stops(void **state) {
-    fixture *f = *state;
-    desktop *d = f->desktop;
-    start(f, flow);
+static void plays_and_stops(desktop *d) {
     user_types(d, "space");
     assert_string_equal(viewer_hears(d, "player "), "plays");
     for (int i = 0; i < 3; i++)
@@ -69,7 +66,6 @@ static void plays_and_stops(void **state) {
     viewer_hears(d, "frame");
     user_clicks(d, "Stop");
     assert_string_equal(viewer_hears(d, "player "), "stops");
-    quit(f);
 }
 
 /* Hides the panels and waits for the picture in their place. */
@@ -82,12 +78,9 @@ static void fill_window(desktop *d) {
     viewer_hears(d, "tick");
 }
 
-static void turns_and_resizes(void **state) {
+static void turns_and_resizes(desktop *d) {
     static const int sizes[][2] = {{500, 300}, {900, 700}, {64, 64},   {1200, 90}, {90, 800},
                                    {701, 501}, {700, 500}, {333, 777}, {820, 520}};
-    fixture *f = *state;
-    desktop *d = f->desktop;
-    start(f, flow);
     for (unsigned button = 1; button <= 3; button++) {
         user_points(d, 560, 200);
         user_presses(d, button, true);
@@ -107,8 +100,8 @@ static void turns_and_resizes(void **state) {
     user_hides(d, true);
     user_hides(d, false);
     fill_window(d);
+    user_types(d, "h");
     assert_false(viewer_said(d, "error"));
-    quit(f);
 }
 
 /* ---- pictures ------------------------------------------------------------------------------ */
@@ -148,12 +141,9 @@ static void assert_same_window(desktop *d, const char *path) {
     free(pixels);
 }
 
-/* In the panels: an edit, a picture, its command line. */
-static void writes_what_the_program_writes(fixture *f, const char *const *words,
-                                           const char *setting) {
-    desktop *d = f->desktop;
+/* A turn, an edit, a picture, its command line. */
+static void writes_what_the_program_writes(desktop *d, const char *setting) {
     char command[8192], name[64];
-    start(f, words);
     user_points(d, 560, 200);
     user_presses(d, 1, true);
     user_points(d, 600, 240);
@@ -163,10 +153,8 @@ static void writes_what_the_program_writes(fixture *f, const char *const *words,
     snprintf(name, sizeof name, "%s ##value", setting);
     user_clicks(d, name);
     viewer_hears(d, "set ");
-    user_clicks(d, "Picture");
+    user_clicks(d, "Save");
     user_clicks(d, "As in the window");
-    user_types(d, "g");
-    user_types(d, "x");
     user_clicks(d, "Save picture");
     assert_string_equal(viewer_hears(d, "saved "), "picture.png");
     user_clicks(d, "Copy command line");
@@ -174,18 +162,27 @@ static void writes_what_the_program_writes(fixture *f, const char *const *words,
     assert_non_null(strstr(command, setting));
     run_command(command, "program.png");
     assert_same_file("picture.png", "program.png");
+}
+
+static void saves_surfaces(void **state) {
+    static const char *const words[] = {"surface", "--ssaa", "1", NULL};
+    fixture *f = *state;
+    start(f, words);
+    writes_what_the_program_writes(f->desktop, "opacity");
     quit(f);
 }
 
-static void saves_lines(void **state) {
-    writes_what_the_program_writes(*state, flow, "strength");
+static void saves_trees(void **state) {
+    static const char *const words[] = {"vessel", "--nodes", "60", "--grid",
+                                        "32",     "--ssaa",  "1",  NULL};
+    fixture *f = *state;
+    start(f, words);
+    writes_what_the_program_writes(f->desktop, "shadow_ratio");
+    quit(f);
 }
 
-static void shows_what_the_program_writes(void **state) {
-    fixture *f = *state;
-    desktop *d = f->desktop;
-    char command[512];
-    start(f, flow);
+static void shows_what_the_program_writes(desktop *d) {
+    char command[1024];
     user_types(d, "g");
     user_types(d, "x");
     user_types(d, "1");
@@ -194,7 +191,7 @@ static void shows_what_the_program_writes(void **state) {
     snprintf(command, sizeof command, "%s", viewer_hears(d, "command "));
     run_command(command, "window.png");
     assert_same_window(d, "window.png");
-    quit(f);
+    user_types(d, "h");
 }
 
 /* ---- files --------------------------------------------------------------------------------- */
@@ -206,12 +203,9 @@ static void write_file(const char *path, const char *text) {
     fclose(file);
 }
 
-static void opens_what_is_dropped(void **state) {
-    fixture *f = *state;
-    desktop *d = f->desktop;
+static void opens_what_is_dropped(desktop *d) {
     char path[1024], folder[900];
     assert_non_null(getcwd(folder, sizeof folder));
-    start(f, flow);
     write_file("tree.swc", "1 1 0 0 0 4 -1\n2 1 0 0 30 3 1\n3 1 10 0 50 2 2\n4 1 -10 0 50 2 2\n");
     snprintf(path, sizeof path, "%s/tree.swc", folder);
     user_drops(d, path);
@@ -225,6 +219,79 @@ static void opens_what_is_dropped(void **state) {
     user_clicks(d, "Close");
     user_types(d, "1"); /* the tree is still there */
     assert_non_null(strstr(viewer_hears(d, "frame"), "ok"));
+}
+
+/* ---- picking and comparing ------------------------------------------------------------------- */
+
+/* Two lines cross, the upper one (the second) nearer to an eye above; a click on the crossing takes
+ * that one, beside it the other, into the void nothing. */
+static void picks_and_opens(void **state) {
+    static const char *const words[] = {
+        "cross.obj",
+        "--width",
+        "4",
+        "--ssaa",
+        "1",
+        "--camera",
+        "{\"eye\":[0,0,100],\"center\":[0,0,0],\"up\":[0,1,0],\"ortho_height\":60}",
+        NULL};
+    static const struct {
+        float x, y, z; /* mm */
+        int kind, line;
+    } clicks[] = {{0, 0, 5, 1, 1}, {12, 0, -5, 1, 0}, {0, -12, 5, 1, 1}, {12, 12, 0, 0, 0}};
+    fixture *f = *state;
+    desktop *d = f->desktop;
+    write_file("cross.obj", "v -20 0 -5\nv 0 0 -5\nv 20 0 -5\nv 0 -20 5\nv 0 0 5\nv 0 20 5\n"
+                            "l 1 2 3\nl 4 5 6\n");
+    start(f, words);
+    fill_window(d);
+    for (int i = 0; i < 4; i++) {
+        int kind, set, line, point;
+        float at[3], mm = (float)HEIGHT / 60;
+        user_points(d, (int)(WIDTH / 2 + mm * clicks[i].x), (int)(HEIGHT / 2 - mm * clicks[i].y));
+        user_presses(d, 1, true);
+        user_presses(d, 1, false);
+        const char *said = viewer_hears(d, "picked ");
+        assert_int_equal(sscanf(said, "%d %d %d %d %f %f %f", &kind, &set, &line, &point, &at[0],
+                                &at[1], &at[2]),
+                         7);
+        assert_int_equal(kind, clicks[i].kind);
+        assert_int_equal(line, clicks[i].line);
+        for (int k = 0; kind && k < 3; k++)
+            assert_float_equal(at[k], (&clicks[i].x)[k], 0.2);
+    }
+    opens_what_is_dropped(d);
+    quit(f);
+}
+
+static void compares_backends(desktop *d) {
+    user_clicks(d, "Compare");
+    user_clicks(d, "Two pictures side by side");
+    for (int i = 0; i < 2; i++) {
+        const char *said = viewer_hears(d, "compared out ");
+        assert_string_equal(said + strlen(said) - 2, " 0"); /* bits that differ */
+        user_points(d, 575, 60);                            /* the divider */
+        user_presses(d, 1, true);
+        user_points(d, 600, 60);
+        user_points(d, 640, 60);
+        user_presses(d, 1, false);
+        user_clicks(d, "Difference");
+        user_types(d, "2");
+    }
+    viewer_hears(d, "compared out ");
+    user_clicks(d, "Two pictures side by side");
+    viewer_hears(d, "frame");
+}
+
+/* All that one viewer can show of lines. */
+static void shows_lines(void **state) {
+    fixture *f = *state;
+    start(f, flow);
+    plays_and_stops(f->desktop);
+    turns_and_resizes(f->desktop);
+    writes_what_the_program_writes(f->desktop, "strength");
+    shows_what_the_program_writes(f->desktop);
+    compares_backends(f->desktop);
     quit(f);
 }
 
@@ -262,11 +329,10 @@ int main(int argc, char **argv) {
     viewer = argv[1];
     program = argv[2];
     const struct CMUnitTest tests[] = {
-        {"plays_and_stops", plays_and_stops, NULL, clean_up, &f},
-        {"turns_and_resizes", turns_and_resizes, NULL, clean_up, &f},
-        {"saves_lines", saves_lines, NULL, clean_up, &f},
-        {"shows_what_the_program_writes", shows_what_the_program_writes, NULL, clean_up, &f},
-        {"opens_what_is_dropped", opens_what_is_dropped, NULL, clean_up, &f},
+        {"shows_lines", shows_lines, NULL, clean_up, &f},
+        {"saves_surfaces", saves_surfaces, NULL, clean_up, &f},
+        {"saves_trees", saves_trees, NULL, clean_up, &f},
+        {"picks_and_opens", picks_and_opens, NULL, clean_up, &f},
     };
     void *state = &f;
     if (argc > 4) /* those of this name */
