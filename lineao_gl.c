@@ -243,7 +243,7 @@ typedef struct lao__gl {
     lao_gl_desc desc;
     const lao_host *host;
     uint32_t features;
-    int software; /* Mesa's processor that draws: lao__gl_draw_segments */
+    int software;                 /* Mesa's processor that draws: lao__gl_draw_segments */
     const lao_shader *fullscreen; /* the vertex stage of shaders that have none */
     lao__gl_uint vertex_array, quads, uniforms, sampler, reader;
     size_t alignment; /* of offsets into `uniforms` */

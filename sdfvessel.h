@@ -374,7 +374,16 @@ SDV_API void sdv_trace(const sdv_grid *grid, const sdv_ray *ray, sdv_hit *hit);
  * what the field gives for free */
 
 enum { SDV_UNION = 0, SDV_INTERSECTION = 1, SDV_SUBTRACTION = 2 };
-enum { SDV_SHAPE_BALL = 0, SDV_SHAPE_BOX = 1, SDV_SHAPE_PLANE = 2, SDV_SHAPE_FIELD = 3 };
+enum {
+    SDV_SHAPE_BALL = 0,
+    SDV_SHAPE_BOX = 1,
+    SDV_SHAPE_PLANE = 2,
+    SDV_SHAPE_FIELD = 3,
+    SDV_SHAPE_TREE = 4 /* the tree itself once more: an organ, cut open, and the tree in it; not to
+                          be subtracted */
+    ,
+    SDV_SHAPE_ELLIPSOID = 5
+};
 
 /* What a tree is combined with, one after the other (struct sdv_shape, below). `fields` holds the
    samples of the shapes of kind SDV_SHAPE_FIELD: signed distances, x fastest, none farther from the
@@ -390,18 +399,27 @@ typedef struct sdv_shapes {
 
 /* Traces the tree combined with shapes (NULL: none; L19 Fig. 11: max(a, -b) and so on): hit->cone
    is SDV_NONE - 1 where the surface is a shape's, and `shape` (Optional) says which; its normal is
-   the shape's, turned inwards where it cuts. No d_min. Thread: any. */
+   the shape's, turned inwards where it cuts. d_min (with SDV_TRACE_NEAREST) is that of the combined
+   distances, found from samples inside the grid's box and `reach` around it: a few percent too
+   great, and less than true in front of edges where shapes cut. Thread: any. */
 #define SDV_CUT_CONE (SDV_NONE - 1u)
 SDV_API void sdv_trace_shapes(const sdv_grid *grid, const sdv_shapes *shapes, const sdv_ray *ray,
                               sdv_hit *hit, uint32_t *shape);
-/* Light that reaches p, 0 .. 1, from the unit direction `light`, past what the field says is near
-   the way: 1 / hardness is the light's radius as seen from p. `bias` (mm) is the start, off the
-   surface. */
-SDV_API float sdv_shadow(const sdv_grid *grid, lao_v3 p, lao_v3 light, float hardness, float bias);
+/* Light that reaches p, 0 .. 1, from the unit direction `light`, past what the field of the tree,
+   combined with shapes (NULL: none), says is near the way: 1 / hardness is the light's radius as
+   seen from p. `bias` (mm) is the start, off the surface. */
+SDV_API float sdv_shadow(const sdv_grid *grid, const sdv_shapes *shapes, lao_v3 p, lao_v3 light,
+                         float hardness, float bias);
 /* Openness of p along its normal, 0 .. 1, from the field at 5 places up to `reach` mm away;
    `inside` non-zero: of a wall seen from within, the room inside counts. */
 SDV_API float sdv_openness(const sdv_grid *grid, lao_v3 p, lao_v3 normal, float reach,
                            uint32_t inside);
+
+/* Normal for shading at a place of the surface of `cone`: where segments meet, their normals go
+   over into each other within `smoothness` of the radius, so that a chain of short segments has no
+   rings. normal: the surface's own. Thread: any. */
+SDV_API lao_v3 sdv_smooth_normal(const sdv_grid *grid, lao_v3 p, uint32_t cone, lao_v3 normal,
+                                 float smoothness);
 
 /* What distances are measured to: a ball, a path, a surface. */
 typedef struct sdv_target_desc {
@@ -469,6 +487,9 @@ SDV_API lao_result sdv_pull_push(const sdv_host *host, const sdv_pull_push_desc 
     X(occlusion_reach, FLOAT, 0.01f, 100, 4, 0, "%", "",                                           \
       "how far field occlusion looks, of the scene's diameter")                                    \
     X(occlusion_strength, FLOAT, 0, 5, 0.75f, 0, "", "", "light that field occlusion takes away")  \
+    X(joint_smoothness, FLOAT, 0, 1, 0.35f, 0, "", "",                                             \
+      "how far light at a joint goes over from one segment to the next, of the radius; 0: "        \
+      "creases")                                                                                   \
     X(surface_ambient, FLOAT, 0, 1, 0.25f, 0, "", "", "ambient part of a surface's illumination")  \
     X(surface_diffuse, FLOAT, 0, 2, 0.7f, 0, "", "", "diffuse part of a surface's illumination")   \
     X(surface_specular, FLOAT, 0, 2, 0.2f, 0, "", "", "specular part of a surface's illumination") \
@@ -489,7 +510,20 @@ SDV_API lao_result sdv_pull_push(const sdv_host *host, const sdv_pull_push_desc 
     X(void_style, ENUM, 0, 3, 0, 1, "", "plain|chromadepth|stipple|hatch",                         \
       "what is drawn behind vessels, where the parameterization is on (chromadepth: or "           \
       "background)")                                                                               \
-    X(isolines, INT, 0, 1000, 30, 0, "", "", "lines of depth of the chromadepth; 0: none")
+    X(isolines, INT, 0, 1000, 30, 0, "", "", "lines of depth of the chromadepth; 0: none")         \
+    X(mark_style, ENUM, 0, 2, 0, 1, "", "stipple|hatch|crosshatch",                                \
+      "pattern of marked vessels (colours of alpha below 1/2), where the parameterization is on")  \
+    X(mark_darkness, FLOAT, 0, 1, 0.35f, 0, "", "", "how much of a marked surface is ink")         \
+    X(mark_halo, FLOAT, 0, 100, 0, 0, "%", "",                                                     \
+      "how far the pattern reaches beyond marked vessels, of the scene's diameter")                \
+    X(field_shadow, BOOL, 0, 1, 0, 1, "", "",                                                      \
+      "soft shadows from the distance field, of a light beside the viewer")                        \
+    X(shadow_light_x, FLOAT, -100, 100, -0.7f, 0, "", "",                                          \
+      "where that light is: to the right, per length towards the viewer")                          \
+    X(shadow_light_y, FLOAT, -100, 100, 0.8f, 0, "", "", "and up")                                 \
+    X(field_shadow_softness, FLOAT, 0.001f, 10, 0.08f, 0, "", "",                                  \
+      "radius of that light per its distance")                                                     \
+    X(field_shadow_strength, FLOAT, 0, 1, 0.55f, 0, "", "", "light that a field shadow takes away")
 
 /* What a vessel tree looks like; as lao_settings: zero is the default unless its bit is set. */
 typedef struct sdv_settings {
@@ -524,13 +558,15 @@ typedef struct sdv_object {
 } sdv_object;
 
 /* Describes a grid for lao_object_create. `colors`: (Optional) 8 bytes a cone: RGBA at its first
-   and at its second end, display values; NULL: all alike. Free with sdv_object_free. Fails with
+   and at its second end, display values; where the alpha between them is below 1/2 the vessel is
+   marked (mark_style); NULL: all alike. Free with sdv_object_free. Fails with
    NULL_ARGUMENT, MEMORY. */
 SDV_API lao_result sdv_object_make(const sdv_host *host, const sdv_grid *grid,
                                    const uint8_t *colors, sdv_object *object);
 /* Combines it with shapes, before it is created or in an update. `colors`: (Optional) red, green,
-   blue of the surface of each, display values. `shapes->fields` is referred to. Fails with
-   NULL_ARGUMENT, SHAPES. */
+   blue of the surface of each, display values; red below 0: the colour of the vessel that is
+   nearest to the place (L19 Fig. 11; as exact as the grid is far from vessels). `shapes->fields` is
+   referred to. Fails with NULL_ARGUMENT, SHAPES. */
 SDV_API lao_result sdv_object_shapes(const sdv_host *host, const sdv_shapes *shapes,
                                      const float *colors, sdv_object *object);
 SDV_API void sdv_object_free(sdv_object *object);
@@ -939,7 +975,8 @@ LAO_FN float sdv_polish(float t, float distance, lao_v3 gradient, lao_v3 directi
 /* ---- shapes and Boolean operations */
 /* kind: SDV_SHAPE_...; ball: a = centre, radius; box: a = centre, b = half its size; plane: a =
    unit normal, offset, inside where normal . p < offset; field: a = place of the first sample,
-   distance of neighbours; b = samples along each axis, 2 or more, and where the first one is. */
+   distance of neighbours; b = samples along each axis, 2 or more, and where the first one is;
+   ellipsoid: a = centre, b = half axes. */
 struct sdv_shape {
     lao_v4 a, b;
     lao_int kind, operation;
@@ -955,6 +992,8 @@ typedef struct sdv_shape sdv_shape;
 #define SDV_SHAPE_BOX 1
 #define SDV_SHAPE_PLANE 2
 #define SDV_SHAPE_FIELD 3
+#define SDV_SHAPE_TREE 4
+#define SDV_SHAPE_ELLIPSOID 5
 #endif
 LAO_FN lao_v3 sdv_box_apart(lao_v3 p, lao_v4 centre, lao_v4 half_size) {
     LAO_EXACT float x = lao_abs(p.x - centre.x) - half_size.x;
@@ -1020,7 +1059,32 @@ LAO_FN float sdv_lattice_distance(sdv_lattice at, float value) {
     LAO_EXACT float d = 0.57f * value;
     return lao_max(d, at.apart > 0.0f ? at.apart : d);
 }
+/* What is nearer to the distance than that bound, and no bound. */
+LAO_FN float sdv_lattice_estimate(sdv_lattice at, float value) {
+    return lao_max(value, at.apart > 0.0f ? at.apart : value);
+}
+/* p from the middle of an ellipsoid, as if it were the unit ball. */
+LAO_FN lao_v3 sdv_ellipsoid_place(lao_v3 p, sdv_shape shape) {
+    LAO_EXACT float x = (p.x - shape.a.x) / shape.b.x;
+    LAO_EXACT float y = (p.y - shape.a.y) / shape.b.y;
+    LAO_EXACT float z = (p.z - shape.a.z) / shape.b.z;
+    return lao_v3_make(x, y, z);
+}
+/* Across its surface, as long as the place there changes per mm. */
+LAO_FN lao_v3 sdv_ellipsoid_slope(lao_v3 place, sdv_shape shape) {
+    LAO_EXACT float x = place.x / shape.b.x;
+    LAO_EXACT float y = place.y / shape.b.y;
+    LAO_EXACT float z = place.z / shape.b.z;
+    return lao_v3_make(x, y, z);
+}
+/* Of an ellipsoid a lower bound: no distance changes faster along the shortest half axis. */
 LAO_FN float sdv_shape_distance(lao_v3 p, sdv_shape shape) {
+    if (shape.kind == SDV_SHAPE_ELLIPSOID) {
+        lao_v3 e = sdv_ellipsoid_place(p, shape);
+        LAO_EXACT float d =
+            (lao_sqrt(lao_v3_dot(e, e)) - 1.0f) * lao_min(shape.b.x, lao_min(shape.b.y, shape.b.z));
+        return d;
+    }
     if (shape.kind == SDV_SHAPE_PLANE) {
         LAO_EXACT float d = lao_v3_dot(p, lao_v3_make(shape.a.x, shape.a.y, shape.a.z)) - shape.a.w;
         return d;
@@ -1036,11 +1100,26 @@ LAO_FN float sdv_shape_distance(lao_v3 p, sdv_shape shape) {
     LAO_EXACT float d = lao_sqrt(lao_v3_dot(q, q)) - shape.a.w;
     return d;
 }
+/* For outlines, occlusion and shadows: as near to the distance as can be had, but no bound. */
+LAO_FN float sdv_shape_estimate(lao_v3 p, sdv_shape shape) {
+    if (shape.kind == SDV_SHAPE_ELLIPSOID) {
+        lao_v3 e = sdv_ellipsoid_place(p, shape);
+        lao_v3 slope = sdv_ellipsoid_slope(e, shape);
+        LAO_EXACT float radial = lao_sqrt(lao_v3_dot(e, e));
+        LAO_EXACT float steep = lao_max(lao_sqrt(lao_v3_dot(slope, slope)), 1.0e-30f);
+        LAO_EXACT float d = radial * (radial - 1.0f) / steep;
+        return d;
+    }
+    return sdv_shape_distance(p, shape);
+}
 LAO_FN lao_v3 sdv_shape_gradient(lao_v3 p, sdv_shape shape) {
     lao_v3 a = lao_v3_make(shape.a.x, shape.a.y, shape.a.z);
     lao_v3 up = lao_v3_make(0.0f, 0.0f, 1.0f);
     if (shape.kind == SDV_SHAPE_PLANE) {
         return a;
+    }
+    if (shape.kind == SDV_SHAPE_ELLIPSOID) {
+        return lao_v3_unit(sdv_ellipsoid_slope(sdv_ellipsoid_place(p, shape), shape), up);
     }
     lao_v3 q = lao_v3_sub(p, a);
     if (shape.kind != SDV_SHAPE_BOX) {
@@ -1105,6 +1184,86 @@ LAO_FN float sdv_tree_bound(float least, bool occupied, float far_step, float ou
     return outside > 0.0f ? lao_max(bound, outside) : bound;
 }
 
+/* Near misses of a tree with shapes, whose distances tell nothing of the line but samples: where
+   they have stopped falling, the least is looked for by halving what is on both sides. */
+struct sdv_watch {
+    float before, older;     /* t of the last two samples */
+    float distance, falling; /* of the last one; 1: it was no more than the one before */
+    float d_min, t_min;      /* the least local minimum so far */
+};
+struct sdv_dip {
+    float low, high;   /* t: the minimum is between */
+    float t, distance; /* the least so far */
+};
+#ifndef LAO_GLSL
+typedef struct sdv_watch sdv_watch;
+typedef struct sdv_dip sdv_dip;
+#endif
+#define SDV_DIP_ROUNDS 4
+LAO_FN sdv_watch sdv_watch_start(float t) {
+    sdv_watch w;
+    w.before = t;
+    w.older = t;
+    w.distance = SDV_FAR;
+    w.falling = 1.0f;
+    w.d_min = SDV_FAR;
+    w.t_min = 0.0f;
+    return w;
+}
+/* The last sample was a local minimum that may matter; `distance`: of this one. */
+LAO_FN bool sdv_watch_passed(sdv_watch w, float distance, float reach) {
+    return w.falling > 0.5f && distance > w.distance &&
+           (reach > 0.0f ? w.distance < 2.0f * reach : w.distance < SDV_FAR);
+}
+LAO_FN sdv_watch sdv_watch_next(sdv_watch w, float t, float distance) {
+    sdv_watch r = w;
+    r.older = w.before;
+    r.before = t;
+    r.distance = distance;
+    r.falling = distance > w.distance ? 0.0f : 1.0f;
+    return r;
+}
+LAO_FN sdv_watch sdv_watch_keep(sdv_watch w, sdv_dip d) {
+    sdv_watch r = w;
+    if (d.distance < w.d_min) {
+        r.d_min = d.distance;
+        r.t_min = d.t;
+    }
+    return r;
+}
+/* Between the sample before the last and t. */
+LAO_FN sdv_dip sdv_dip_start(sdv_watch w, float t) {
+    sdv_dip d;
+    d.low = w.older;
+    d.high = t;
+    d.t = w.before;
+    d.distance = w.distance;
+    return d;
+}
+/* Where to look on the lower side (0) and on the upper one. */
+LAO_FN float sdv_dip_place(sdv_dip d, lao_int side) {
+    LAO_EXACT float t = 0.5f * (d.t + (side != 0 ? d.high : d.low));
+    return t;
+}
+/* What was found there. */
+LAO_FN sdv_dip sdv_dip_add(sdv_dip d, float below, float above) {
+    sdv_dip r = d;
+    float low = sdv_dip_place(d, 0), high = sdv_dip_place(d, 1);
+    if (below < d.distance && below <= above) {
+        r.high = d.t;
+        r.t = low;
+        r.distance = below;
+    } else if (above < d.distance) {
+        r.low = d.t;
+        r.t = high;
+        r.distance = above;
+    } else {
+        r.low = low;
+        r.high = high;
+    }
+    return r;
+}
+
 /* ---- outlines and shadows from d_min (L19 5 with METHODS 5.4); lengths in mm */
 /* Outside the tree, nearer to it than `width`. */
 LAO_FN bool sdv_is_silhouette(bool hit, float d_min, float width) {
@@ -1130,6 +1289,11 @@ LAO_FN float sdv_depth_shadow(float d_min, float t_min, float t, float ratio, fl
         return 0.0f;
     }
     return lao_clamp01(dark);
+}
+/* Start of a shadow's way, off the surface. */
+LAO_FN float sdv_shadow_bias(float cell) {
+    LAO_EXACT float r = 0.05f * cell;
+    return r;
 }
 /* Soft shadow: `light` so far, 1 at the start, after a sample of the field at t on the way. */
 LAO_FN float sdv_shadow_add(float light, float distance, float t, float hardness) {
@@ -1305,6 +1469,7 @@ LAO_FN float sdv_push_weight(sdv_mix parents, float own) {
 #define SDV_NEAR_MISS_EXACT 1
 #define SDV_NEAR_MISS_NONE 2
 #define SDV_OUTLINE_PX 0
+#define SDV_HALO_FOOTPRINT 0.3f /* periods per pixel: where the void is steeper, marks end */
 /* Pixels of the picture per mm at view depth z; scale, depth: of lao_frame_uniforms. */
 LAO_FN float sdv_zoom(lao_v4 scale, lao_v4 depth, float z, float supersampling) {
     LAO_EXACT float across = (depth.w > 0.5f ? 1.0f : lao_max(z, 1.0e-6f)) * supersampling;
@@ -1316,22 +1481,57 @@ LAO_FN float sdv_outline_width(float width, float unit, float zoom) {
     LAO_EXACT float mm = width / zoom;
     return unit > 0.5f ? width : mm;
 }
-/* How near to a vessel a ray must pass for anything to be drawn of it, mm. `shadow`: % of the
-   diameter. */
-LAO_FN float sdv_near_miss_reach(float silhouette, float contour, float shadow, float diameter) {
-    LAO_EXACT float widest = 0.01f * shadow * diameter;
+/* How near to a vessel a ray must pass for anything to be drawn of it, mm. `shadow`, `halo`: % of
+   the diameter. */
+LAO_FN float sdv_near_miss_reach(float silhouette, float contour, float shadow, float halo,
+                                 float diameter) {
+    LAO_EXACT float widest = 0.01f * lao_max(shadow, halo) * diameter;
     return lao_max(lao_max(silhouette, contour), widest);
 }
-/* Between the colours of a cone's ends, by the place along its axis. */
-LAO_FN lao_v3 sdv_cone_color(lao_v3 p, lao_v4 a, lao_v4 b, lao_v3 color_a, lao_v3 color_b) {
+/* Place of p along a cone's axis, 0 at a, 1 at b. */
+LAO_FN float sdv_cone_place(lao_v3 p, lao_v4 a, lao_v4 b) {
     lao_v3 axis = lao_v3_make(b.x - a.x, b.y - a.y, b.z - a.z);
     lao_v3 q = lao_v3_make(p.x - a.x, p.y - a.y, p.z - a.z);
     LAO_EXACT float along = lao_v3_dot(q, axis) / lao_max(lao_v3_dot(axis, axis), 1.0e-30f);
-    LAO_EXACT float t = lao_clamp01(along);
+    return lao_clamp01(along);
+}
+/* Between the colours of a cone's ends, by the place along its axis. */
+LAO_FN lao_v3 sdv_cone_color(lao_v3 p, lao_v4 a, lao_v4 b, lao_v3 color_a, lao_v3 color_b) {
+    float t = sdv_cone_place(p, a, b);
     LAO_EXACT float x = color_a.x + t * (color_b.x - color_a.x);
     LAO_EXACT float y = color_a.y + t * (color_b.y - color_a.y);
     LAO_EXACT float z = color_a.z + t * (color_b.z - color_a.z);
     return lao_v3_make(x, y, z);
+}
+/* Is the place marked? alpha_a, alpha_b: of the colours of the cone's ends. */
+LAO_FN bool sdv_is_marked(lao_v3 p, lao_v4 a, lao_v4 b, float alpha_a, float alpha_b) {
+    LAO_EXACT float alpha = alpha_a + sdv_cone_place(p, a, b) * (alpha_b - alpha_a);
+    return alpha < 0.5f;
+}
+/* How near to a place of the surface another cone takes part in its shading normal, mm: within what
+   the cell's list is sure to hold. a, b: of the cone at p. */
+LAO_FN float sdv_joint_reach(lao_v3 p, lao_v4 a, lao_v4 b, float smoothness, float cell) {
+    sdv_cone_point c = sdv_cone_point_make(p, a, b);
+    LAO_EXACT float reach = smoothness * (a.w + c.place * (b.w - a.w));
+    return lao_min(reach, sdv_near_reach(cell));
+}
+/* Adds a cone's gradient to those before, the less the farther its surface is. */
+LAO_FN lao_v3 sdv_joint_add(lao_v3 sum, lao_v3 p, lao_v4 a, lao_v4 b, float reach) {
+    sdv_cone_point c = sdv_cone_point_make(p, a, b);
+    if (!(c.distance < reach)) {
+        return sum;
+    }
+    LAO_EXACT float part = 1.0f - lao_max(c.distance, 0.0f) / reach;
+    LAO_EXACT float weight = part * part;
+    return lao_v3_along(sum, sdv_round_cone_gradient(p, a, b), weight);
+}
+/* The mean of the gradients on the side of the surface's own normal, unit. */
+LAO_FN lao_v3 sdv_joint_normal(lao_v3 sum, lao_v3 normal) {
+    lao_v3 n = lao_v3_unit(sum, normal);
+    if (lao_v3_dot(n, normal) < 0.0f) {
+        return lao_v3_scale(n, -1.0f);
+    }
+    return n;
 }
 /* Light after something dark, 0 .. 1, of that strength. */
 LAO_FN float sdv_dimmed(float light, float dark, float strength) {
@@ -1384,6 +1584,11 @@ LAO_FN lao_v3 sdv_turned(lao_m4 m, lao_v3 v) {
     LAO_EXACT float y = m.x.y * v.x + m.y.y * v.y + m.z.y * v.z;
     LAO_EXACT float z = m.x.z * v.x + m.y.z * v.y + m.z.z * v.z;
     return lao_v3_make(x, y, z);
+}
+/* Unit vector to the light of field shadows: x to the right and y up per length towards the viewer.
+   world: of lao_frame_uniforms. */
+LAO_FN lao_v3 sdv_shadow_light(lao_m4 world, float x, float y) {
+    return lao_v3_unit(sdv_turned(world, lao_v3_make(x, y, 1.0f)), lao_v3_make(0.0f, 0.0f, 1.0f));
 }
 /* mm across a pixel at that depth. */
 LAO_FN float sdv_pixel_size(lao_v4 ray, float depth, float orthographic) {
@@ -4063,13 +4268,17 @@ static lao_v4 sdv__field_value(const sdv_shapes *shapes, const sdv_lattice *l) {
     const float *at = shapes->fields + l->at;
     return sdv_lattice_value(l->part, sdv__four(at, l->row), sdv__four(at + l->layer, l->row));
 }
-static float sdv__shape_distance(const sdv_shapes *shapes, uint32_t i, lao_v3 p) {
+/* bound: no more than the distance; else as near to it as can be had. */
+static float sdv__shape_distance(const sdv_shapes *shapes, uint32_t i, lao_v3 p, bool bound) {
+    const sdv_shape shape = shapes->shapes[i];
     sdv_lattice l;
-    if (shapes->shapes[i].kind != SDV_SHAPE_FIELD) {
-        return sdv_shape_distance(p, shapes->shapes[i]);
+    float value;
+    if (shape.kind != SDV_SHAPE_FIELD) {
+        return bound ? sdv_shape_distance(p, shape) : sdv_shape_estimate(p, shape);
     }
-    l = sdv_lattice_at(p, shapes->shapes[i]);
-    return sdv_lattice_distance(l, sdv__field_value(shapes, &l).w);
+    l = sdv_lattice_at(p, shape);
+    value = sdv__field_value(shapes, &l).w;
+    return bound ? sdv_lattice_distance(l, value) : sdv_lattice_estimate(l, value);
 }
 static lao_v3 sdv__shape_gradient(const sdv_shapes *shapes, lao_int i, lao_v3 p) {
     sdv_lattice l;
@@ -4081,15 +4290,20 @@ static lao_v3 sdv__shape_gradient(const sdv_shapes *shapes, lao_int i, lao_v3 p)
     v = sdv__field_value(shapes, &l);
     return lao_v3_unit(lao_v3_make(v.x, v.y, v.z), lao_v3_make(0.0f, 0.0f, 1.0f));
 }
-static sdv_solid sdv__solid_at(const sdv_grid *g, const sdv_shapes *shapes, lao_v3 p,
-                               uint32_t *cone) {
-    sdv_solid s = sdv_solid_start(sdv__tree_bound(g, p, cone));
+/* `tree`, its distance or a lower bound of that at p, combined with all shapes. */
+static sdv_solid sdv__solid_of(const sdv_shapes *shapes, float tree, lao_v3 p, bool bound) {
+    sdv_solid s = sdv_solid_start(tree);
     uint32_t i;
     for (i = 0; i < shapes->count; i++) {
-        s = sdv_solid_add(s, sdv__shape_distance(shapes, i, p), shapes->shapes[i].operation,
-                          (lao_int)i);
+        bool again = shapes->shapes[i].kind == SDV_SHAPE_TREE;
+        s = sdv_solid_add(s, again ? tree : sdv__shape_distance(shapes, i, p, bound),
+                          shapes->shapes[i].operation, again ? -1 : (lao_int)i);
     }
     return s;
+}
+static sdv_solid sdv__solid_at(const sdv_grid *g, const sdv_shapes *shapes, lao_v3 p,
+                               uint32_t *cone) {
+    return sdv__solid_of(shapes, sdv__tree_bound(g, p, cone), p, true);
 }
 static lao_v3 sdv__solid_gradient(const sdv_grid *g, const sdv_shapes *shapes, const sdv_solid *s,
                                   lao_v3 p, uint32_t cone) {
@@ -4127,18 +4341,55 @@ static bool sdv__united(const sdv_shapes *shapes) {
     return false;
 }
 
+/* What near misses go by: not only a bound, where it matters. */
+static float sdv__watched(const sdv_grid *g, const sdv_shapes *shapes, lao_v3 p, float reach) {
+    const lao_v4 *cell = sdv__cell_at(g, p);
+    float tree = SDV_FAR;
+    if (cell->w > 0.0f || sdv_is_within(cell->z, reach)) {
+        tree = sdv_grid_distance(g, p, NULL);
+    }
+    return sdv__solid_of(shapes, tree, p, false).distance;
+}
+static sdv_watch sdv__dip(const sdv_grid *g, const sdv_shapes *shapes, const sdv_ray *ray,
+                          sdv_watch w, float t) {
+    sdv_dip d = sdv_dip_start(w, t);
+    int i, k;
+    for (i = 0; i < SDV_DIP_ROUNDS; i++) {
+        float found[2];
+        for (k = 0; k < 2; k++) {
+            lao_v3 p = lao_v3_along(ray->origin, ray->direction, sdv_dip_place(d, k));
+            found[k] = sdv__watched(g, shapes, p, ray->reach);
+        }
+        d = sdv_dip_add(d, found[0], found[1]);
+    }
+    return sdv_watch_keep(w, d);
+}
+static sdv_watch sdv__watch(const sdv_grid *g, const sdv_shapes *shapes, const sdv_ray *ray,
+                            sdv_watch w, float t) {
+    lao_v3 p = lao_v3_along(ray->origin, ray->direction, t);
+    float d = sdv__watched(g, shapes, p, ray->reach);
+    if (sdv_watch_passed(w, d, ray->reach)) {
+        w = sdv__dip(g, shapes, ray, w, t);
+    }
+    return sdv_watch_next(w, t, d);
+}
+
 SDV_API void sdv_trace_shapes(const sdv_grid *grid, const sdv_shapes *shapes, const sdv_ray *ray,
                               sdv_hit *hit, uint32_t *shape) {
     static const sdv_shapes none = {NULL, 0, NULL, 0};
-    lao_v2 span = sdv_ray_box(ray->origin, ray->direction, sdv__grid_box(grid));
+    bool nearest = (ray->flags & SDV_TRACE_NEAREST) != 0;
+    sdv_box box = sdv__grid_box(grid);
+    lao_v2 span;
+    sdv_watch watch;
     uint32_t cone = 0, i;
     float t;
     shapes = shapes ? shapes : &none;
-    span = sdv_solid_span(span, sdv__united(shapes));
+    box = nearest ? sdv_box_grown(box, ray->reach) : box;
+    span = sdv_solid_span(sdv_ray_box(ray->origin, ray->direction, box), sdv__united(shapes));
     t = span.x;
+    watch = sdv_watch_start(t);
     memset(hit, 0, sizeof *hit);
     hit->cone = SDV_NONE;
-    hit->d_min = SDV_FAR;
     if (shape) {
         *shape = SDV_NONE;
     }
@@ -4151,25 +4402,48 @@ SDV_API void sdv_trace_shapes(const sdv_grid *grid, const sdv_shapes *shapes, co
         hit->steps++;
         if (left < sdv_hit_distance(grid->cell)) {
             sdv__solid_land(grid, shapes, ray, t, hit, shape);
-            return;
+            break;
         }
+        watch = nearest && !hit->inside ? sdv__watch(grid, shapes, ray, watch, t) : watch;
         t += left;
     }
+    if (nearest && hit->cone == SDV_NONE && sdv_watch_passed(watch, SDV_FAR, ray->reach)) {
+        watch = sdv__dip(grid, shapes, ray, watch, watch.before);
+    }
+    hit->d_min = watch.d_min;
+    hit->t_min = watch.t_min;
 }
 
-SDV_API float sdv_shadow(const sdv_grid *grid, lao_v3 p, lao_v3 light, float hardness, float bias) {
+SDV_API float sdv_shadow(const sdv_grid *grid, const sdv_shapes *shapes, lao_v3 p, lao_v3 light,
+                         float hardness, float bias) {
     lao_v2 span = sdv_ray_box(p, light, sdv__grid_box(grid));
-    float lit = 1.0f, t = lao_max(bias, span.x);
+    float lit = 1.0f, t;
     int i;
+    span = shapes ? sdv_solid_span(span, sdv__united(shapes)) : span;
+    t = lao_max(bias, span.x);
     for (i = 0; i < SDV_MAX_STEPS && t <= span.y && lit > 0.0f; i++) {
         lao_v3 q = lao_v3_along(p, light, t);
-        float d = sdv_grid_distance(grid, q, NULL);
         uint32_t cone;
+        float d = sdv_grid_distance(grid, q, NULL), step = sdv__tree_bound(grid, q, &cone);
+        d = shapes ? sdv__solid_of(shapes, d, q, false).distance : d;
+        step = shapes ? sdv__solid_of(shapes, step, q, true).distance : step;
         lit = sdv_shadow_add(lit, d, t, hardness);
         lit = d < sdv_hit_distance(grid->cell) ? 0.0f : lit;
-        t += lao_max(sdv__tree_bound(grid, q, &cone), sdv_hit_distance(grid->cell));
+        t += lao_max(step, sdv_hit_distance(grid->cell));
     }
     return lit;
+}
+SDV_API lao_v3 sdv_smooth_normal(const sdv_grid *grid, lao_v3 p, uint32_t cone, lao_v3 normal,
+                                 float smoothness) {
+    const lao_v4 *cell = sdv__cell_at(grid, p), *own = grid->cones + 2 * (size_t)cone;
+    float reach = sdv_joint_reach(p, own[0], own[1], smoothness, grid->cell);
+    lao_v3 sum = lao_v3_make(0.0f, 0.0f, 0.0f);
+    uint32_t i;
+    for (i = 0; reach > 0.0f && i < (uint32_t)cell->w; i++) {
+        const lao_v4 *ends = grid->cones + 2 * (size_t)grid->ids[(size_t)cell->z + i];
+        sum = sdv_joint_add(sum, p, ends[0], ends[1], reach);
+    }
+    return sdv_joint_normal(sum, normal);
 }
 SDV_API float sdv_openness(const sdv_grid *grid, lao_v3 p, lao_v3 normal, float reach,
                            uint32_t inside) {
@@ -4851,6 +5125,12 @@ static bool sdv__shape_fits(const sdv_shape *s, uint32_t field_count) {
             return false;
         }
     }
+    if (s->kind == SDV_SHAPE_TREE) {
+        return s->operation != SDV_SUBTRACTION;
+    }
+    if (s->kind == SDV_SHAPE_ELLIPSOID) {
+        return s->b.x > 0.0f && s->b.y > 0.0f && s->b.z > 0.0f;
+    }
     return s->kind != SDV_SHAPE_FIELD ||
            (s->a.w > 0.0f && s->b.x >= 2.0f && s->b.y >= 2.0f && s->b.z >= 2.0f && s->b.w >= 0.0f &&
             (double)s->b.w + size <= field_count);
@@ -4879,8 +5159,11 @@ SDV_API lao_result sdv_object_shapes(const sdv_host *host, const sdv_shapes *sha
         to[0] = s->a;
         to[1] = s->b;
         to[2] = lao_v4_make((float)s->kind, (float)s->operation, 0.0f, 0.0f);
-        to[3] = colors ? lao_v4_make(colors[3 * i], colors[3 * i + 1], colors[3 * i + 2], 1.0f)
-                       : lao_v4_make(0.93f, 0.86f, 0.72f, 1.0f);
+        to[3] = lao_v4_make(0.93f, 0.86f, 0.72f, 1.0f);
+        if (colors) {
+            const float *c = colors + (size_t)3 * i;
+            to[3] = lao_v4_make(c[0], c[1], c[2], c[0] < 0.0f ? 0.0f : 1.0f);
+        }
     }
     sdv__object_buffer(object, 5, object->shapes, 1 + 4 * shapes->count);
     object->desc.buffer_count = 6;

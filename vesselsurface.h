@@ -17,10 +17,11 @@
        desc.triangle_count = t; desc.triangles = corners;
        vsf_mesh mesh;
        if (vsf_mesh_build(NULL, &desc, &mesh) != LAO_OK) return 1;  // NULL: malloc, serial, silent
-       vsf_mesh_smooth(NULL, &mesh, NULL);                      // (Optional) Taubin, 20 double
-   steps vsf_buffers buffers; vsf_buffers_make(NULL, &mesh, 0, &buffers); vsf_measure(NULL,
-   &buffers, eye, 0, measure);            // 1/mm per vertex, per frame vsf_near_desc lines = {0};
-   // pathlines with times (ms)
+       vsf_mesh_smooth(NULL, &mesh, NULL);           // (Optional) Taubin, 20 double steps
+       vsf_buffers buffers;
+       vsf_buffers_make(NULL, &mesh, 0, &buffers);
+       vsf_measure(NULL, &buffers, eye, 0, measure); // 1/mm per vertex, per frame
+       vsf_near_desc lines = {0};                    // pathlines with times (ms)
        ...
        vsf_near table;
        vsf_near_make(NULL, &lines, &table);                     // table.gamma; distances per step
@@ -245,21 +246,26 @@ VSF_API lao_result vsf_curvatures(const vsf_host *host, const vsf_mesh *mesh, fl
  * what a device gets */
 
 /* The texel buffers of a surface: X(name, format). Vertex indices are numbers, so that a mesh has
-   at most 2^24 vertices. surface_points     per vertex: position; ring start / 256 surface_normals
-   per vertex: normal; (ring start % 256) * 65536 + number of ring entries surface_rings      per
-   neighbour of a vertex: g; the neighbour. The gradient of a function l on the surface is the sum
-   of g (l(neighbour) - l(vertex)): triangle gradients, turned into the vertex's tangent plane and
-   averaged by mixed Voronoi areas, are linear in l and do not depend on the view surface_triangles
-   per triangle: its three vertices; 0 surface_values     per vertex: any value, such as an
-   attribute surface_near       two per vertex: distances at two steps, see vsf_near_pair The last
-   two are the host's to give: vsf_buffers_make does not make them. */
+   at most 2^24 vertices.
+     surface_points     per vertex: position; ring start / 256
+     surface_normals    per vertex: normal; (ring start % 256) * 65536 + number of ring entries
+     surface_rings      per neighbour of a vertex: g; the neighbour. The gradient of a function l on
+                        the surface is the sum of g (l(neighbour) - l(vertex)): triangle gradients,
+                        turned into the vertex's tangent plane and averaged by mixed Voronoi areas,
+                        are linear in l and do not depend on the view
+     surface_triangles  per triangle: its three vertices; 0
+     surface_values     per vertex: any value, such as an attribute
+     surface_near       two per vertex: distances at two steps, see vsf_near_pair
+     surface_map        any number of colours: the map of near_colors=map, x from 0 to 1
+   The last three are the host's to give: vsf_buffers_make does not make them. */
 #define VSF_BUFFERS(X)                                                                             \
     X(surface_points, LAO_FORMAT_RGBA32F)                                                          \
     X(surface_normals, LAO_FORMAT_RGBA32F)                                                         \
     X(surface_rings, LAO_FORMAT_RGBA32F)                                                           \
     X(surface_triangles, LAO_FORMAT_RGBA32F)                                                       \
     X(surface_values, LAO_FORMAT_R32F)                                                             \
-    X(surface_near, LAO_FORMAT_R32F)
+    X(surface_near, LAO_FORMAT_R32F)                                                               \
+    X(surface_map, LAO_FORMAT_RGBA32F)
 
 /* The rows of VSF_BUFFERS, for the table of a module. Thread: any. */
 VSF_API const lao_buffer_row *vsf_buffer_rows(uint32_t *count);
@@ -422,6 +428,10 @@ VSF_API double vsf_segment_distance2(const float p[3], const float a[3], const f
       "front faces drawn behind the nearest one, exactly, where surfaces overlap")                 \
     X(near_source, ENUM, 0, 1, 0, 1, "", "distance|value",                                         \
       "what shifts the hue: distance to lit lines, or the values of the vertices")                 \
+    X(near_colors, ENUM, 0, 1, 0, 1, "", "hues|map",                                               \
+      "what near is shown by: the hues of the look-up, or a colour map of its own")                \
+    X(near_opacity, FLOAT, 0, 1, 0.8f, 0, "", "",                                                  \
+      "map: least opacity where x is 1, less elsewhere, however flat the wall")                    \
     X(near_gamma, FLOAT, 0, 1e6f, 0, 0, "mm", "",                                                  \
       "distance at which lit lines stop to matter; 0: none is near (gamma)")                       \
     X(near_part, FLOAT, 0, 1, 0, 0, "", "",                                                        \
@@ -474,14 +484,16 @@ typedef enum vsf_setting {
    of several parts); objects are composed in the order of their sets. Static. Thread: any. */
 VSF_API const lao_module *vsf_module(void);
 
-/* A mesh as the object of a set. `desc` refers to the struct itself: it must not move. `near` and
-   `values` may be filled by the host before lao_object_create or _update. */
+enum { VSF_MAP_COLORS = 256 };
+/* A mesh as the object of a set. `desc` refers to the struct itself: it must not move. `near_pair`,
+   `values` and `map` may be filled by the host before lao_object_create or _update. */
 typedef struct vsf_object {
     lao_object_desc desc; /* all buffers */
-    lao_object_buffer list[6];
+    lao_object_buffer list[7];
     vsf_buffers buffers;
     float *near_pair;        /* 2 per vertex, mm: distances at two steps; VSF_FAR at first */
     float *values;           /* 1 per vertex; 0 at first */
+    float *map;              /* 4 for each of VSF_MAP_COLORS, display values; greys at first */
     uint32_t step;           /* of near_pair; VSF_NONE at first */
     lao_allocator allocator; /* private */
 } vsf_object;
@@ -585,24 +597,6 @@ LAO_FN float vsf_ring_end(vsf_ring_sum ring) {
     return lao_abs(s) < 1.0e30f ? s : 0.0f; /* no number: 0 */
 }
 
-/* ---- pathlines that are lit (METHODS 9.1) */
-/* f = exp(-(T - t)^2 / beta), 0.25 at least; ms and ms^2 */
-LAO_FN float vsf_highlight(float time, float t, float beta) {
-    LAO_EXACT float d = time - t;
-    LAO_EXACT float x = -1.44269504f * (d * d / beta);
-    return lao_max(lao_exp2(x), 0.25f);
-}
-/* A colour with its saturation times `keep`: lightness (HLS) stays. */
-LAO_FN lao_v3 vsf_desaturate(lao_v3 color, float keep) {
-    LAO_EXACT float least = lao_min(color.x, lao_min(color.y, color.z));
-    LAO_EXACT float most = lao_max(color.x, lao_max(color.y, color.z));
-    LAO_EXACT float grey = 0.5f * (least + most) * (1.0f - keep);
-    LAO_EXACT float x = grey + keep * color.x;
-    LAO_EXACT float y = grey + keep * color.y;
-    LAO_EXACT float z = grey + keep * color.z;
-    return lao_v3_make(x, y, z);
-}
-
 /* ---- the two coordinates of the look-up (METHODS 9.2, 9.3) */
 /* A distance between those at two steps; VSF_FAR where either is (0 and 1 take one step alone). */
 LAO_FN float vsf_near_mix(float before, float after, float part) {
@@ -650,6 +644,21 @@ LAO_FN lao_v4 vsf_lookup(float x, float y) {
     return lao_v4_make(color.x, color.y, color.z, opacity);
 }
 
+/* Where in a map of `count` colours x is: how far behind a colour, and that colour (whole, so that
+   there is one behind it). */
+LAO_FN lao_v2 vsf_map_place(float x, float count) {
+    LAO_EXACT float at = lao_clamp01(x) * (count - 1.0f);
+    LAO_EXACT float before = lao_max(lao_min(lao_floor(at), count - 2.0f), 0.0f);
+    return lao_v2_make(at - before, before);
+}
+/* The other look: a colour that tells x, premultiplied with |y|, or more where x is large. */
+LAO_FN lao_v4 vsf_mapped(lao_v3 color, float x, float y, float opacity) {
+    LAO_EXACT float least = opacity * x;
+    LAO_EXACT float most = lao_max(lao_abs(y), least);
+    lao_v3 c = lao_v3_scale(color, most);
+    return lao_v4_make(c.x, c.y, c.z, most);
+}
+
 /* ---- opacity of the baselines (METHODS 10.4) */
 /* a^r for a in [0, 1] and r > 0 */
 LAO_FN float vsf_power(float a, float r) {
@@ -689,12 +698,6 @@ LAO_FN lao_v4 vsf_add(lao_v4 front, lao_v4 behind) {
     LAO_EXACT float w = front.w + behind.w;
     return lao_v4_make(lao_min(x, 1.0f), lao_min(y, 1.0f), lao_min(z, 1.0f), lao_min(w, 1.0f));
 }
-/* A ghosted surface (METHODS 9.3): front faces over the flow over opaque back faces over what is
-   behind all. Each premultiplied. */
-LAO_FN lao_v4 vsf_ghost(lao_v4 front, lao_v4 flow, lao_v4 back, lao_v4 behind) {
-    return vsf_over(front, vsf_over(flow, vsf_over(back, behind)));
-}
-
 /* ---- focus (METHODS 10.5) */
 /* How far a depth is outside the focus region, mm */
 LAO_FN float vsf_outside(float z, float focus_near, float focus_far) {
@@ -752,6 +755,8 @@ LAO_FN lao_v3 vsf_unsharp(lao_v3 color, float depth, float blurred, float streng
 #define VSF_BLEND_ADD 1
 #define VSF_NEAR_DISTANCE 0
 #define VSF_NEAR_VALUE 1
+#define VSF_NEAR_HUES 0
+#define VSF_NEAR_MAP 1
 /* x of a value between the two that are 0 and 1; 0 for no number */
 LAO_FN float vsf_value_x(float value, float low, float high) {
     LAO_EXACT float x = (value - low) / (high - low);
@@ -3878,7 +3883,7 @@ VSF_API lao_result vsf_near_exact(const vsf_host *host, const vsf_near *table, d
 #define VSF__SURFACE {"#surface_points", '>', 0}
 #define VSF__ANY {NULL, 0, 0}
 #define VSF__MESH VSF__READ("#surface_points"), VSF__READ("#surface_normals"), VSF__READ("#surface_triangles")
-#define VSF__FRONT VSF__MESH, VSF__READ("#surface_near"), VSF__READ("#surface_values"), VSF__READ("surface_measure"), VSF__READ("zbuffer")
+#define VSF__FRONT VSF__MESH, VSF__READ("#surface_near"), VSF__READ("#surface_values"), VSF__READ("surface_measure"), VSF__READ("zbuffer"), VSF__READ("#surface_map")
 #define VSF__PLAIN(format, size) format, size, 0, 0, NULL, 0, LAO_ENCODING_PLAIN
 
 static const lao_image_row vsf__images[] = {
@@ -3976,7 +3981,7 @@ VSF_API lao_result vsf_object_make(const vsf_host *host, const vsf_mesh *mesh, u
     vsf_buffers buffers;
     lao_result result;
     float *extra;
-    uint32_t n, i;
+    uint32_t n, i, k;
     if (!mesh || !object) {
         return vsf__fail(host, VSF_LOG_NULL_ARGUMENT, "vsf_object_make");
     }
@@ -3991,7 +3996,7 @@ VSF_API lao_result vsf_object_make(const vsf_host *host, const vsf_mesh *mesh, u
                          "distances of %u vertices need %u texels, the device has %u", n, 2 * n,
                          max_texels);
     }
-    extra = (float *)vsf__take(&a, 3 * (uint64_t)n, sizeof *extra);
+    extra = (float *)vsf__take(&a, 3 * (uint64_t)n + 4 * VSF_MAP_COLORS, sizeof *extra);
     if (!extra) {
         vsf_buffers_free(&buffers);
         return vsf__fail(host, VSF_LOG_MEMORY, "distances of %u vertices", n);
@@ -4001,15 +4006,22 @@ VSF_API lao_result vsf_object_make(const vsf_host *host, const vsf_mesh *mesh, u
     object->buffers = buffers;
     object->near_pair = extra;
     object->values = extra + 2 * (size_t)n;
+    object->map = extra + 3 * (size_t)n;
     object->step = VSF_NONE;
     for (i = 0; i < n; i++) {
         object->near_pair[2 * (size_t)i] = object->near_pair[2 * (size_t)i + 1] = VSF_FAR;
         object->values[i] = 0.0f;
     }
+    for (i = 0; i < VSF_MAP_COLORS; i++) {
+        for (k = 0; k < 4; k++) {
+            object->map[4 * i + k] = k < 3 ? (float)i / (VSF_MAP_COLORS - 1) : 1.0f;
+        }
+    }
     vsf_buffers_describe(&object->buffers, object->list, &object->desc);
     vsf__object_extra(object, 4, object->values, n);
     vsf__object_extra(object, 5, object->near_pair, 2 * n);
-    object->desc.buffer_count = 6;
+    vsf__object_extra(object, 6, object->map, VSF_MAP_COLORS);
+    object->desc.buffer_count = 7;
     return LAO_OK;
 }
 

@@ -99,7 +99,7 @@ static double median(const double *values, uint32_t count) {
 
 /* Of each round, because its rows were measured one after the other. */
 static double quotient(const table *t, int a, int b) {
-    double q[BENCH_FRAMES];
+    double q[BENCH_FRAMES] = {0};
     for (uint32_t i = 0; i < t->it->frames; i++)
         q[i] = t->times[a][i] / t->times[b][i];
     return median(q, t->it->frames);

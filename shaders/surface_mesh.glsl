@@ -7,11 +7,13 @@ LAO_TEX(3, samplerBuffer, distances) /* two per vertex: at two steps */
 LAO_TEX(4, samplerBuffer, values)
 LAO_TEX(5, sampler2D, measures)
 LAO_TEX(6, sampler2D, scene_z)
-LAO_TEX(7, sampler2D, layer_z)
+LAO_TEX(7, samplerBuffer, map)
+LAO_TEX(8, sampler2D, layer_z)
 LAO_CONSTANT(0, lao_constant_variant)
 LAO_CONSTANT(1, lao_constant_shading)
 LAO_CONSTANT(2, lao_constant_near_source)
 LAO_CONSTANT(3, lao_constant_falloff_form)
+LAO_CONSTANT(4, lao_constant_near_colors)
 
 LAO_VARYING(0, vec4, at_point)  /* world, mm; measure */
 LAO_VARYING(1, vec4, at_normal) /* world; x of the look-up */
@@ -47,6 +49,15 @@ LAO_OUT(2, vec4, out_normal)
 LAO_OUT(3, vec4, out_lookup)
 
 #ifdef LAO_FRAGMENT
+/* x by the object's colour map. */
+lao_v4 mapped(float x, float y) {
+    lao_v2 place = vsf_map_place(x, float(textureSize(map)));
+    int before = int(place.y);
+    int behind = min(before + 1, textureSize(map) - 1);
+    lao_v4 color = vsf_mix(texelFetch(map, before), texelFetch(map, behind), place.x);
+    return vsf_mapped(color.xyz, x, y, lao_setting_near_opacity);
+}
+
 void main() {
     lao_v3 n = lao_v3_unit(at_normal.xyz, lao_v3_make(0.0, 0.0, 0.0));
     lao_v4 eye = vsf_eye(lao_frame.view, lao_frame.depth.w);
@@ -71,7 +82,13 @@ void main() {
             discard;
         }
     }
-    lao_v4 lookup = vsf_lookup(at_normal.w, vsf_measure_y(at_point.w, lao_setting_brightness));
+    float y = vsf_measure_y(at_point.w, lao_setting_brightness);
+    lao_v4 lookup;
+    if (lao_constant_near_colors == VSF_NEAR_MAP) {
+        lookup = mapped(at_normal.w, y);
+    } else {
+        lookup = vsf_lookup(at_normal.w, y);
+    }
     out_lookup = vec4(lookup.xyz, at_normal.w);
     if (lao_constant_shading == VSF_SHADING_ADAPTIVE) {
         out_color = lookup;

@@ -39,12 +39,14 @@ vec4 sdv_four_fetch(samplerBuffer fields, int at, int row) {
 vec4 sdv_field_value(samplerBuffer fields, sdv_lattice l) {
     return sdv_lattice_value(l.part, sdv_four_fetch(fields, l.at, l.row), sdv_four_fetch(fields, l.at + l.layer, l.row));
 }
-float sdv_shape_distance_at(samplerBuffer fields, sdv_shape s, lao_v3 p) {
+/* bound: no more than the distance; else as near to it as can be had. */
+float sdv_shape_distance_at(samplerBuffer fields, sdv_shape s, lao_v3 p, bool bound) {
     if (s.kind != SDV_SHAPE_FIELD) {
-        return sdv_shape_distance(p, s);
+        return bound ? sdv_shape_distance(p, s) : sdv_shape_estimate(p, s);
     }
     sdv_lattice l = sdv_lattice_at(p, s);
-    return sdv_lattice_distance(l, sdv_field_value(fields, l).w);
+    float value = sdv_field_value(fields, l).w;
+    return bound ? sdv_lattice_distance(l, value) : sdv_lattice_estimate(l, value);
 }
 lao_v3 sdv_shape_gradient_at(samplerBuffer fields, sdv_shape s, lao_v3 p) {
     if (s.kind != SDV_SHAPE_FIELD) {
@@ -53,14 +55,27 @@ lao_v3 sdv_shape_gradient_at(samplerBuffer fields, sdv_shape s, lao_v3 p) {
     vec4 v = sdv_field_value(fields, sdv_lattice_at(p, s));
     return lao_v3_unit(v.xyz, lao_v3_make(0.0, 0.0, 1.0));
 }
-sdv_solid sdv_solid_add_all(samplerBuffer shapes, samplerBuffer fields, sdv_solid start, lao_v3 p) {
+sdv_solid sdv_solid_add_all(samplerBuffer shapes, samplerBuffer fields, sdv_solid start, lao_v3 p, bool bound) {
     sdv_solid r = start;
     int count = int(texelFetch(shapes, 0).x);
     for (int i = 0; i < count; i++) {
         sdv_shape s = sdv_shape_fetch(shapes, i);
-        r = sdv_solid_add(r, sdv_shape_distance_at(fields, s, p), s.operation, i);
+        bool again = s.kind == SDV_SHAPE_TREE;
+        float d = again ? start.distance : sdv_shape_distance_at(fields, s, p, bound);
+        r = sdv_solid_add(r, d, s.operation, again ? -1 : i);
     }
     return r;
+}
+/* How near to a vessel a ray must pass for anything to be drawn of it, mm; pixels are widest at the far end. */
+float sdv_frame_reach(float supersampling) {
+    float zoom = sdv_zoom(lao_frame.scale, lao_frame.depth, lao_frame.depth.x + lao_frame.depth.z, supersampling);
+    return sdv_near_miss_reach(sdv_outline_width(lao_setting_silhouette, lao_setting_outline_unit, zoom),
+                               sdv_outline_width(lao_setting_contour, lao_setting_outline_unit, zoom),
+                               lao_setting_shadow_width, lao_setting_mark_halo, lao_frame.depth.z);
+}
+/* Signed distance of the tree at p. */
+float sdv_tree_distance_at(samplerBuffer cells, samplerBuffer ids, samplerBuffer cones, sdv_box box, vec4 cell, lao_v3 p) {
+    return sdv_near_at(cells, ids, cones, box, cell, p, lao_v3_make(0.0, 0.0, 1.0)).distance;
 }
 /* The distance, and the number of the nearest cone of the cell's list (-1: it has none). */
 struct sdv_solid_sample {
@@ -82,6 +97,6 @@ sdv_solid_sample sdv_solid_at(samplerBuffer cells, samplerBuffer ids, samplerBuf
         }
     }
     sdv_solid tree = sdv_solid_start(sdv_tree_bound(least, cell.w > 0.0, cell.z, sdv_box_distance(p, box), box.cell));
-    r.solid = sdv_solid_add_all(shapes, fields, tree, p);
+    r.solid = sdv_solid_add_all(shapes, fields, tree, p, true);
     return r;
 }

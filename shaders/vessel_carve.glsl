@@ -5,12 +5,33 @@ LAO_TEX(2, samplerBuffer, ids)
 LAO_TEX(3, samplerBuffer, cones)
 LAO_TEX(4, samplerBuffer, shapes)
 LAO_TEX(5, samplerBuffer, fields)
+LAO_CONSTANT(0, lao_constant_near_miss)
+LAO_CONSTANT(1, lao_constant_supersampling)
 
 LAO_OUT(0, vec4, out_position) /* world, mm; number of the cone, -1: nothing was hit, -2: a shape */
-LAO_OUT(1, vec4, out_normal)   /* world, towards the viewer; no near miss */
-LAO_OUT(2, vec4, out_ray)      /* mm along the ray; which shape; samples; 1: from inside the solid */
+LAO_OUT(1, vec4, out_normal)   /* world, towards the viewer; least distance of a near miss, mm */
+LAO_OUT(2, vec4, out_ray)      /* mm along the ray: hit, near miss; samples; 2 * shape, + 1: from inside the solid */
 
 #ifdef LAO_FRAGMENT
+/* What near misses go by: not only a bound, where it matters. */
+float watched(sdv_box b, lao_v3 p, float reach) {
+    vec4 cell = texelFetch(cells, sdv_cell_at(b, p));
+    float tree = SDV_FAR;
+    if (cell.w > 0.0 || sdv_is_within(cell.z, reach)) {
+        tree = sdv_tree_distance_at(cells, ids, cones, b, cell, p);
+    }
+    return sdv_solid_add_all(shapes, fields, sdv_solid_start(tree), p, false).distance;
+}
+sdv_watch dip(sdv_box b, lao_v3 origin, lao_v3 direction, sdv_watch w, float t, float reach) {
+    sdv_dip d = sdv_dip_start(w, t);
+    for (int i = 0; i < SDV_DIP_ROUNDS; i++) {
+        float below = watched(b, lao_v3_along(origin, direction, sdv_dip_place(d, 0)), reach);
+        float above = watched(b, lao_v3_along(origin, direction, sdv_dip_place(d, 1)), reach);
+        d = sdv_dip_add(d, below, above);
+    }
+    return sdv_watch_keep(w, d);
+}
+
 void land(sdv_box b, lao_v3 origin, lao_v3 direction, float start, bool inside) {
     float t = start;
     for (int i = 0; i <= SDV_POLISH_ROUNDS; i++) {
@@ -26,7 +47,8 @@ void land(sdv_box b, lao_v3 origin, lao_v3 direction, float start, bool inside) 
             out_position = vec4(p, s.cone);
         }
         out_normal.xyz = inside ? lao_v3_scale(gradient, -1.0) : gradient;
-        out_ray.xy = vec2(t, s.solid.part >= 0 ? float(s.solid.part) : 0.0);
+        out_ray.x = t;
+        out_ray.w = (s.solid.part >= 0 ? 2.0 * float(s.solid.part) : 0.0) + (inside ? 1.0 : 0.0);
         t = sdv_polish(t, s.solid.distance, gradient, direction, b.cell);
     }
 }
@@ -37,13 +59,20 @@ void main() {
     lao_v3 origin = lao_ray_origin(lao_frame.world, slope, lao_frame.depth.w);
     lao_v3 direction = lao_ray_direction(lao_frame.world, slope, lao_frame.depth.w);
     sdv_box b = sdv_box_fetch(box);
-    lao_v2 span = sdv_solid_span(sdv_ray_box(origin, direction, b), texelFetch(shapes, 0).y > 0.5);
+    bool nearest = lao_constant_near_miss != SDV_NEAR_MISS_NONE;
+    sdv_box around = b;
+    float reach = 0.0;
+    if (lao_constant_near_miss == SDV_NEAR_MISS_CLOSE) {
+        reach = sdv_frame_reach(float(lao_constant_supersampling));
+        around = sdv_box_grown(b, reach);
+    }
+    lao_v2 span = sdv_solid_span(sdv_ray_box(origin, direction, around), texelFetch(shapes, 0).y > 0.5);
     LAO_EXACT float t = span.x;
+    sdv_watch watch = sdv_watch_start(t);
     float steps = 0.0;
     bool inside = false;
     bool hit = false;
     out_position = vec4(0.0, 0.0, 0.0, -1.0);
-    out_normal = vec4(0.0, 0.0, 0.0, SDV_FAR);
     for (int i = 0; i < SDV_MAX_STEPS; i++) {
         if (!(t <= span.y) || hit) {
             break;
@@ -57,10 +86,21 @@ void main() {
         steps += 1.0;
         hit = left < sdv_hit_distance(b.cell);
         if (!hit) {
+            if (nearest && !inside) {
+                float d = watched(b, lao_v3_along(origin, direction, t), reach);
+                if (sdv_watch_passed(watch, d, reach)) {
+                    watch = dip(b, origin, direction, watch, t, reach);
+                }
+                watch = sdv_watch_next(watch, t, d);
+            }
             t = t + left;
         }
     }
-    out_ray = vec4(0.0, 0.0, steps, inside ? 1.0 : 0.0);
+    if (nearest && !hit && sdv_watch_passed(watch, SDV_FAR, reach)) {
+        watch = dip(b, origin, direction, watch, watch.before, reach);
+    }
+    out_normal = vec4(0.0, 0.0, 0.0, watch.d_min);
+    out_ray = vec4(0.0, watch.t_min, steps, inside ? 1.0 : 0.0);
     if (hit) {
         land(b, origin, direction, t, inside);
     }

@@ -23,17 +23,22 @@ LAO_CONSTANT(4, lao_constant_style)
 LAO_CONSTANT(5, lao_constant_void_style)
 LAO_CONSTANT(6, lao_constant_variant) /* 1: with shapes */
 LAO_CONSTANT(7, lao_constant_supersampling)
+LAO_CONSTANT(8, lao_constant_mark_style)
+LAO_CONSTANT(9, lao_constant_field_shadow)
 
 LAO_OUT(0, vec4, out_color)
 
 #ifdef LAO_FRAGMENT
-/* Signed distance at p, from the list of its cell. */
-float field_at(sdv_box b, lao_v3 p) {
-    float d = sdv_near_at(cells, ids, cones, b, texelFetch(cells, sdv_cell_at(b, p)), p, lao_v3_make(0.0, 0.0, 1.0)).distance;
+/* What is known of the tree's distance at p, with shapes. */
+float combined(float d, lao_v3 p, bool bound) {
     if (lao_constant_variant != 0) {
-        d = sdv_solid_add_all(shapes, fields, sdv_solid_start(d), p).distance;
+        return sdv_solid_add_all(shapes, fields, sdv_solid_start(d), p, bound).distance;
     }
     return d;
+}
+/* Signed distance at p, from the list of its cell. */
+float field_at(sdv_box b, lao_v3 p) {
+    return combined(sdv_tree_distance_at(cells, ids, cones, b, texelFetch(cells, sdv_cell_at(b, p)), p), p, false);
 }
 
 /* Openness of p along its normal: sdv_openness; from within a vessel the room inside counts. */
@@ -46,6 +51,51 @@ float openness(sdv_box b, lao_v3 p, lao_v3 n, bool inside) {
         closed = sdv_open_add(closed, inside ? -d : d, place, i);
     }
     return sdv_open_result(closed);
+}
+
+/* Normal for shading: sdv_smooth_normal. */
+lao_v3 smooth_normal(sdv_box b, lao_v3 p, float cone, lao_v3 n) {
+    int own = 2 * int(cone);
+    float reach = sdv_joint_reach(p, texelFetch(cones, own), texelFetch(cones, own + 1), lao_setting_joint_smoothness, b.cell);
+    vec4 cell = texelFetch(cells, sdv_cell_at(b, p));
+    int count = reach > 0.0 ? int(cell.w) : 0;
+    lao_v3 sum = lao_v3_make(0.0, 0.0, 0.0);
+    for (int i = 0; i < count; i++) {
+        int at = 2 * int(texelFetch(ids, int(cell.z) + i).x);
+        sum = sdv_joint_add(sum, p, texelFetch(cones, at), texelFetch(cones, at + 1), reach);
+    }
+    return sdv_joint_normal(sum, n);
+}
+/* Light that reaches p past the vessels: sdv_shadow. */
+float lit_at(sdv_box b, lao_v3 p) {
+    lao_v3 light = sdv_shadow_light(lao_frame.world, lao_setting_shadow_light_x, lao_setting_shadow_light_y);
+    lao_v2 span = sdv_ray_box(p, light, b);
+    if (lao_constant_variant != 0) {
+        span = sdv_solid_span(span, texelFetch(shapes, 0).y > 0.5);
+    }
+    float least = sdv_hit_distance(b.cell);
+    float lit = 1.0;
+    LAO_EXACT float t = lao_max(sdv_shadow_bias(b.cell), span.x);
+    LAO_EXACT float hardness = 1.0 / lao_setting_field_shadow_softness;
+    for (int i = 0; i < SDV_MAX_STEPS; i++) {
+        if (!(t <= span.y) || !(lit > 0.0)) {
+            break;
+        }
+        lao_v3 q = lao_v3_along(p, light, t);
+        vec4 cell = texelFetch(cells, sdv_cell_at(b, q));
+        float tree = sdv_tree_distance_at(cells, ids, cones, b, cell, q);
+        float d = combined(tree, q, false);
+        lit = d < least ? 0.0 : sdv_shadow_add(lit, d, t, hardness);
+        float bound = combined(sdv_tree_bound(tree, cell.w > 0.0, cell.z, sdv_box_distance(q, b), b.cell), q, true);
+        t = t + lao_max(bound, least);
+    }
+    return lit;
+}
+/* Is the place p at the cone marked? */
+bool is_marked(float cone, lao_v3 p) {
+    int at = 2 * int(cone);
+    return sdv_is_marked(p, texelFetch(cones, at), texelFetch(cones, at + 1), texelFetch(colors, at).w,
+                         texelFetch(colors, at + 1).w);
 }
 
 /* Periods per pixel of the pixel's u or v, or of depth. */
@@ -61,6 +111,31 @@ float ink(ivec2 pixel, int style, lao_v3 n, lao_v3 p, lao_v3 direction, float da
     float wide_u = footprint(texelFetch(along, pixel, 0).xyz, n, p, direction, lao_setting_ssp_period);
     float wide_v = footprint(texelFetch(across, pixel, 0).xyz, n, p, direction, lao_setting_ssp_period);
     return sdv_style_ink(style, phase.x, phase.y, dark, wide_u, wide_v);
+}
+/* Ink of a mark. */
+float mark_ink(ivec2 pixel, lao_v3 n, lao_v3 p, lao_v3 direction) {
+    return ink(pixel, lao_constant_mark_style + SDV_STYLE_STIPPLE, n, p, direction, lao_setting_mark_darkness);
+}
+/* The same in the void close to a marked vessel; near_miss: where the ray is nearest to it. */
+float halo_ink(ivec2 pixel, float d_min, lao_v3 near_miss, lao_v3 direction) {
+    if (lao_constant_parameterization <= 1 || lao_constant_near_miss == SDV_NEAR_MISS_NONE ||
+        !(d_min < 0.01 * lao_setting_mark_halo * lao_frame.depth.z)) {
+        return 0.0;
+    }
+    sdv_box b = sdv_box_fetch(box);
+    vec4 cell = texelFetch(cells, sdv_cell_at(b, near_miss));
+    float cone = sdv_near_at(cells, ids, cones, b, cell, near_miss, direction).cone;
+    if (cone < 0.0 || !is_marked(cone, near_miss)) {
+        return 0.0;
+    }
+    lao_v3 n = texelFetch(bgnormal, pixel, 0).xyz;
+    lao_v3 p = texelFetch(surface, pixel, 0).xyz;
+    float wide = lao_max(footprint(texelFetch(along, pixel, 0).xyz, n, p, direction, lao_setting_ssp_period),
+                         footprint(texelFetch(across, pixel, 0).xyz, n, p, direction, lao_setting_ssp_period));
+    if (!(wide < SDV_HALO_FOOTPRINT)) {
+        return 0.0;
+    }
+    return mark_ink(pixel, n, p, direction);
 }
 /* Ink of a depth shadow: lines the other way. */
 float shadow_ink(ivec2 pixel, lao_v3 n, lao_v3 p, lao_v3 direction, float dark) {
@@ -117,11 +192,16 @@ void main() {
         }
     }
     if (missed && !outlined) {
-        if (!has_void()) {
+        LAO_EXACT float mark = halo_ink(pixel, n.w, lao_v3_along(origin, direction, r.y), direction);
+        if (!has_void() && !(mark > 0.0)) {
             discard;
         }
         gl_FragDepth = lao_frame.scale.z > 0.5 ? 1.0e-7 : 0.9999999; /* before nothing but the empty depth buffer */
-        out_color = void_color(pixel, direction);
+        LAO_EXACT float paper = 1.0 - mark;
+        out_color = vec4(0.0, 0.0, 0.0, mark);
+        if (has_void()) {
+            out_color = vec4(lao_v3_scale(void_color(pixel, direction).xyz, paper), 1.0);
+        }
         return;
     }
     lao_v3 p = outlined ? lao_v3_along(origin, direction, r.y) : hit.xyz;
@@ -131,17 +211,35 @@ void main() {
         out_color = vec4(0.0, 0.0, 0.0, 1.0);
         return;
     }
+    bool inside = r.w > 0.5;
+    float cone = hit.w;
     lao_v3 color;
+    if (lao_constant_variant != 0) { /* r.w: 2 * shape, + 1 inside */
+        inside = r.w - 2.0 * lao_floor(0.5 * r.w) > 0.5;
+    }
     if (lao_constant_variant != 0 && hit.w < 0.0) {
-        color = texelFetch(shapes, 4 + 4 * int(r.y)).xyz;
-    } else {
-        int at = 2 * int(hit.w);
+        vec4 own = texelFetch(shapes, 4 + 4 * int(0.5 * r.w));
+        color = own.xyz;
+        if (own.w < 0.5) { /* that of the nearest vessel */
+            sdv_box b = sdv_box_fetch(box);
+            cone = sdv_near_at(cells, ids, cones, b, texelFetch(cells, sdv_cell_at(b, p)), p, direction).cone;
+        }
+    }
+    if (cone >= 0.0) {
+        int at = 2 * int(cone);
         color = sdv_cone_color(p, texelFetch(cones, at), texelFetch(cones, at + 1), texelFetch(colors, at).xyz,
                                texelFetch(colors, at + 1).xyz);
     }
+    lao_v3 facing = n.xyz;
+    if (hit.w >= 0.0) {
+        facing = smooth_normal(sdv_box_fetch(box), p, hit.w, n.xyz);
+    }
     LAO_EXACT float light = 1.0;
     if (lao_constant_field_occlusion != 0) {
-        light = sdv_dimmed(light, 1.0 - openness(sdv_box_fetch(box), p, n.xyz, r.w > 0.5), lao_setting_occlusion_strength);
+        light = sdv_dimmed(light, 1.0 - openness(sdv_box_fetch(box), p, facing, inside), lao_setting_occlusion_strength);
+    }
+    if (lao_constant_field_shadow != 0) {
+        light = sdv_dimmed(light, 1.0 - lit_at(sdv_box_fetch(box), p), lao_setting_field_shadow_strength);
     }
     bool inked = lao_constant_parameterization > 1 && lao_constant_style != SDV_STYLE_PLAIN;
     LAO_EXACT float dark = 0.0;
@@ -157,15 +255,19 @@ void main() {
     if (shadowed && inked) {
         white = 1.0 - shadow_ink(pixel, n.xyz, p, direction, dark);
     }
+    if (lao_constant_parameterization > 1 && hit.w >= 0.0 && is_marked(hit.w, p)) {
+        LAO_EXACT float unmarked = 1.0 - mark_ink(pixel, n.xyz, p, direction);
+        white = white * unmarked;
+    }
     lao_v3 towards = lao_v3_scale(direction, -1.0);
     if (inked && lao_constant_style != SDV_STYLE_SHADOW) {
-        float tone = sdv_style_tone(lao_v3_dot(n.xyz, towards), lao_setting_surface_ambient, lao_setting_surface_diffuse,
+        float tone = sdv_style_tone(lao_v3_dot(facing, towards), lao_setting_surface_ambient, lao_setting_surface_diffuse,
                                     light);
         LAO_EXACT float paper = white * (1.0 - ink(pixel, lao_constant_style, n.xyz, p, direction, 1.0 - tone));
         out_color = vec4(lao_v3_scale(color, paper), 1.0);
         return;
     }
-    lao_v3 shade = sdv_shade(color, n.xyz, towards, lao_setting_surface_ambient, lao_setting_surface_diffuse,
+    lao_v3 shade = sdv_shade(color, facing, towards, lao_setting_surface_ambient, lao_setting_surface_diffuse,
                              lao_setting_surface_specular, lao_constant_surface_shininess, light);
     out_color = vec4(lao_v3_scale(shade, white), 1.0);
 }

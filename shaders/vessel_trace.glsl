@@ -82,11 +82,7 @@ void main() {
     sdv_box around = b;
     float reach = 0.0;
     if (lao_constant_near_miss == SDV_NEAR_MISS_CLOSE) {
-        float zoom = sdv_zoom(lao_frame.scale, lao_frame.depth, lao_frame.depth.x + lao_frame.depth.z,
-                              float(lao_constant_supersampling)); /* at the far end, where a pixel is widest */
-        reach = sdv_near_miss_reach(sdv_outline_width(lao_setting_silhouette, lao_setting_outline_unit, zoom),
-                                    sdv_outline_width(lao_setting_contour, lao_setting_outline_unit, zoom),
-                                    lao_setting_shadow_width, lao_frame.depth.z);
+        reach = sdv_frame_reach(float(lao_constant_supersampling));
         around = sdv_box_grown(b, reach);
     }
     sdv_march m = sdv_march_start(sdv_ray_box(origin, direction, around));

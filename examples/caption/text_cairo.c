@@ -48,6 +48,7 @@ static uint8_t *take(cairo_t *cr, uint32_t width, uint32_t height) {
 
 bool text_mask_make(const char *text, const text_style *style, text_mask *out) {
     text_mask mask;
+    memset(&mask, 0, sizeof mask);
     mask.margin = (uint32_t)ceil(style->outline_width) + 2;
     mask.width = text_width(text, style) + 2 * mask.margin;
     mask.height = (uint32_t)ceil(style->size) + 2 * mask.margin;

@@ -1,6 +1,7 @@
 #include "arguments.h"
 
 #include "colour.h"
+#include "io_volume.h"
 #include "report.h"
 #include "scene.h"
 #include "video.h"
@@ -29,6 +30,7 @@ typedef enum flag_type {
     FLAG_SETTING, /* the setting named in `choices` */
     FLAG_LAYOUT,  /* const char *[2]: the name of an .svg, of a .json */
     FLAG_SHAPE,   /* a further shape; `choices`: the operation */
+    FLAG_TARGET,  /* a further path ("path" in `choices`) or target */
     FLAG_FOCUS,   /* cli_surface_options: two numbers or four */
 } flag_type;
 
@@ -46,6 +48,8 @@ typedef struct flag_row {
 #define SHOT (CLI_RENDER | CLI_VESSEL | CLI_SURFACE)
 #define DRAWN (BOTH | CLI_VESSEL | CLI_SURFACE)
 #define TRACE (BOTH | CLI_FLOW)
+#define FLOWN (TRACE | CLI_SURFACE)
+#define VOLUME (ANY | CLI_SURFACE)
 #define ALL(field) false, offsetof(cli_options, field)
 #define FILE_(field) true, offsetof(cli_source, field)
 
@@ -54,20 +58,23 @@ static const flag_row flags[] = {
     {"--out", "-o", "FILE.png", FLAG_TEXT, BOTH | CLI_SHEET | CLI_SURFACE, ALL(out), NULL, "the picture; with --frames a pattern (out_%04d.png, first = 0), or a video: .mp4, .webm, .gif"},
     {"--out", "-o", "FILE", FLAG_TEXT, CLI_FLOW, ALL(out), NULL, "the lines: .vtp (with time and speed), .trk (the same) or .tck (positions alone)"},
     {"--out", "-o", "FILE.png", FLAG_TEXT, CLI_VESSEL, ALL(out), NULL, "the picture; of several cameras or frames a pattern (out_%04d.png, first = 0) or a video"},
-    {"--style", NULL, "NAME", FLAG_CHOICE, CLI_VESSEL, ALL(vessel.style), CLI_STYLES, "a set of settings: default, plain (light alone), ink (flat colours and outlines) or glow (soft, no outlines)"},
+    {"--style", NULL, "NAME", FLAG_CHOICE, CLI_VESSEL, ALL(vessel.style), CLI_STYLES, "a set of settings: default, plain (light alone), ink (flat colours and outlines), glow (soft, no outlines), stipple, hatch, crosshatch, layered (ink that follows the vessels), shadow (hatched depth shadows) or void (depth as colour behind them)"},
     {"--grid", NULL, "N", FLAG_COUNT, CLI_VESSEL, ALL(vessel.grid), NULL, "cells of the distance field along its longest axis, 16..512 (128)"},
     {"--layout", NULL, "FILE", FLAG_LAYOUT, CLI_VESSEL, ALL(vessel.layout), NULL, "the tree in 2D: a drawing (.svg) or numbers (.json); give it twice for both"},
-    {"--layout-weight", NULL, "NAME", FLAG_TEXT, CLI_VESSEL, ALL(vessel.weight), NULL, "lay out by this attribute of the nodes, or by radius, instead of by the number of nodes"},
+    {"--layout-weight", NULL, "NAME", FLAG_TEXT, CLI_VESSEL, ALL(vessel.weight), NULL, "lay out by this attribute of the nodes, by radius, or by how near they are to the --path or --target (near), instead of by their number"},
     {"--tree", NULL, "FILE.json", FLAG_TEXT, CLI_VESSEL, ALL(vessel.tree), NULL, "nodes and segments as they are drawn; segment.V of a dump counts these"},
-    {"--path", NULL, "X,Y,Z:X,Y,Z...", FLAG_TEXT, CLI_VESSEL, ALL(vessel.path), NULL, "distances of the vessels to a path through these points (mm): a needle"},
-    {"--target", NULL, "X,Y,Z,R|MESH", FLAG_TEXT, CLI_VESSEL, ALL(vessel.target), NULL, "the same to a ball, or to the surface in a file: a tumour"},
-    {"--subtract", NULL, "SHAPE", FLAG_SHAPE, CLI_VESSEL, ALL(vessel.shapes), "2", "cut away sphere:X,Y,Z,R, box:X,Y,Z,X,Y,Z (two corners), plane:NX,NY,NZ,D (where n.p < D) or the inside of a FILE (mesh or tree)"},
+    {"--path", NULL, "X,Y,Z:X,Y,Z...", FLAG_TARGET, CLI_VESSEL, ALL(vessel.targets), "path", "distances of the vessels to a path through these points (mm): a needle"},
+    {"--target", NULL, "X,Y,Z,R|MESH", FLAG_TARGET, CLI_VESSEL, ALL(vessel.targets), NULL, "the same to a ball, or to the surface in a file: a tumour"},
+    {"--risk", NULL, "MM", FLAG_LENGTH, CLI_VESSEL, ALL(vessel.risk), NULL, "mark vessels nearer than this with a pattern, and list them in --json (with --link 15)"},
+    {"--link", NULL, NULL, FLAG_SWITCH, CLI_VESSEL, ALL(vessel.link), NULL, "the picture shows the 2D layout beside the tree, in the same colours and patterns; --path and --target may be given up to 6 times: a column for each"},
+    {"--subtract", NULL, "SHAPE", FLAG_SHAPE, CLI_VESSEL, ALL(vessel.shapes), "2", "cut away sphere:X,Y,Z,R, box:X,Y,Z,X,Y,Z (two corners), plane:NX,NY,NZ,D (where n.p < D), ellipsoid:X,Y,Z,A,B,C (half axes) or the inside of a FILE (mesh or tree)"},
     {"--intersect", NULL, "SHAPE", FLAG_SHAPE, CLI_VESSEL, ALL(vessel.shapes), "1", "keep what is inside; the shapes are applied in the order of the flags"},
-    {"--union", NULL, "SHAPE", FLAG_SHAPE, CLI_VESSEL, ALL(vessel.shapes), "0", "add the shape"},
+    {"--union", NULL, "SHAPE", FLAG_SHAPE, CLI_VESSEL, ALL(vessel.shapes), "0", "add the shape; --union tree adds the vessels again, behind the cuts of an organ"},
+    {"--shape-color", NULL, "#rrggbb|nearest", FLAG_PAINT, CLI_VESSEL, ALL(vessel.shape_color), NULL, "of what shapes add or cut open, or that of the nearest vessel"},
     {"--nodes", NULL, "N", FLAG_COUNT, CLI_VESSEL, ALL(vessel.nodes), NULL, "of the embedded tree, when no TREE is given (3000)"},
     {"--cameras", NULL, "FILE.json", FLAG_TEXT, CLI_VESSEL, ALL(vessel.cameras), NULL, "an array of cameras: one picture for each"},
     {"--frames", NULL, "N", FLAG_COUNT, CLI_VESSEL, ALL(frames), NULL, "pictures of one turn around the tree"},
-    {"--lines", NULL, "FILE", FLAG_TEXT, CLI_SURFACE, ALL(surface.lines), NULL, "pathlines with the point array 'time' (ms): drawn inside, and what the surface lights up for"},
+    {"--lines", NULL, "FILE", FLAG_TEXT, CLI_SURFACE, ALL(surface.lines), NULL, "pathlines with the point array 'time' (ms), or steady lines with 'speed' or 'velocity' (m/s): drawn inside, and what the surface lights up for"},
     {"--baseline", NULL, "NAME", FLAG_CHOICE, CLI_SURFACE, ALL(surface.baseline), "transparent|fresnel", "for comparison, the setting shading: transparent or fresnel"},
     {"--brightness", NULL, "MM|auto", FLAG_AUTO, CLI_SURFACE, ALL(surface.brightness), NULL, "how much the wall shows of its shape; auto: by its median curvature (1.5; embedded surfaces: auto)"},
     {"--focus", NULL, "NEAR,FAR|X,Y,Z,R", FLAG_FOCUS, CLI_SURFACE, ALL(surface), NULL, "blur what is nearer or farther from the eye than this (mm), or than a ball"},
@@ -77,31 +84,36 @@ static const flag_row flags[] = {
     {"--flip", NULL, "on|off", FLAG_CHOICE, CLI_SURFACE, ALL(surface.flip), "on|off", "turn the MESH inside out, or leave an open one that seems to be so (closed ones never are)"},
     {"--smooth", NULL, "N", FLAG_COUNT, CLI_SURFACE, ALL(surface.smooth), NULL, "smooth the MESH by N double steps that keep its volume (Taubin)"},
     {"--subdivide", NULL, "N", FLAG_COUNT, CLI_SURFACE, ALL(surface.subdivide), NULL, "each time four triangles for one (Loop), 1..4"},
-    {"--scene", NULL, "NAME", FLAG_CHOICE, CLI_SURFACE, ALL(scene), "aorta|aneurysm|liver|bone", "embedded surface, when no MESH is given: aorta (an arch with a bulge, and its flow), aneurysm, liver or bone"},
+    {"--scene", NULL, "NAME", FLAG_CHOICE, CLI_SURFACE, ALL(scene), "aorta|aneurysm|liver|bone", "embedded surface, when no MESH is given: aorta (an arch with a bulge, and its flow), aneurysm, liver (with a vein inside) or bone"},
     {"--frames", NULL, "N", FLAG_COUNT, CLI_SURFACE, ALL(frames), NULL, "a sequence of pictures or a video over one period of the lines, or from their first time to the last"},
-    {"--time", NULL, "MS", FLAG_NUMBER, CLI_SURFACE, ALL(time), NULL, "what is lit: the lines around this time, and the surface near them (0; of the embedded flow 180)"},
-    {"--unit", NULL, "NAME", FLAG_CHOICE, CLI_SURFACE, FILE_(unit), "mm|cm|um|m", "of the MESH (mm)"},
+    {"--time", NULL, "MS", FLAG_NUMBER, CLI_SURFACE, ALL(time), NULL, "what is lit: the lines around this time, and the surface near them (0; of the embedded flow 180, of a VOLUME half of the median line's)"},
+    {"--unit", NULL, "NAME", FLAG_CHOICE, CLI_SURFACE, FILE_(unit), "mm|cm|um|m|m/s|cm/s|mm/s", "of the MESH or TREE: mm (default), cm, um or m; of a VOLUME's velocities: m/s (default), cm/s or mm/s"},
+    {"--grid", NULL, "N", FLAG_COUNT, CLI_SURFACE, ALL(surface.grid), NULL, "of a TREE: voxels along its longest axis, of which the mesh is made, 32..512 (256)"},
+    {"--wall-colormap", NULL, "NAME", FLAG_CHOICE, CLI_SURFACE, ALL(surface.colormap), COLOUR_MAPS, "show near flow or --value by a colour map, not by two hues: " COLOUR_MAPS},
+    {"--contours", NULL, "MM", FLAG_ABOVE, CLI_SURFACE, ALL(surface.contours[0]), NULL, "draw the wall's contours as lines this wide"},
+    {"--suggestive-contours", NULL, "MM", FLAG_ABOVE, CLI_SURFACE, ALL(surface.contours[1]), NULL, "draw where contours would appear next if the view turned, as lines this wide"},
+    {"--suggestive-threshold", NULL, "X", FLAG_LENGTH, CLI_SURFACE, ALL(surface.threshold), NULL, "all of these whose measure has this slope across them (1/mm^2); unless given the clear ones, by the median curvature"},
     {"--color", NULL, "#rrggbb", FLAG_PAINT, CLI_SURFACE, FILE_(color), NULL, "of the lines: or r,g,b in 0..1, direction, line or the NAME of an attribute"},
     {"--colormap", NULL, "NAME", FLAG_CHOICE, CLI_SURFACE, FILE_(colormap), COLOUR_MAPS, "of the lines' attribute: " COLOUR_MAPS " (viridis)"},
     {"--range", NULL, "A,B", FLAG_RANGE, CLI_SURFACE, FILE_(range), NULL, "values at both ends of --value or of the lines' colours, or percentiles (2%,98%)"},
     {"--every", NULL, "N", FLAG_COUNT, CLI_SURFACE, FILE_(every), NULL, "keep each N-th line"},
-    {"--seeds", NULL, "N", FLAG_COUNT, TRACE, ALL(flow.seeds), NULL, "lines, each from a random place inside and a random time (one per 4 mm^3, 1000 to 30000)"},
-    {"--seed", NULL, "N", FLAG_COUNT, TRACE, ALL(flow.seed), NULL, "of the random numbers; the same gives the same lines"},
-    {"--mask", NULL, "FILE|NAME", FLAG_TEXT, ANY, ALL(flow.mask), NULL, "where the vessel is: a volume of the same size, or an array of the FILE (>= 0.5 is inside)"},
-    {"--threshold", NULL, "M/S", FLAG_LENGTH, TRACE, ALL(flow.threshold), NULL, "inside is where the speed reaches this at some time (without a mask: a tenth of the highest)"},
-    {"--streamlines", NULL, NULL, FLAG_SWITCH, TRACE, ALL(flow.streamlines), NULL, "lines of the field frozen --at a time, instead of pathlines"},
-    {"--at", NULL, "MS", FLAG_NUMBER, TRACE, ALL(flow.at), NULL, "the time of --streamlines (0)"},
-    {"--step", NULL, "MS|auto", FLAG_AUTO, TRACE, ALL(flow.step), NULL, "time between the points of a line (period / 200; steady: half a voxel at the highest speed)"},
-    {"--max-points", NULL, "N", FLAG_COUNT, TRACE, ALL(flow.max_points), NULL, "of a line (200)"},
-    {"--span", NULL, "NAME", FLAG_CHOICE, TRACE, ALL(flow.span), "cycle|loop|free", "cycle: one beat, the same for all (default); loop: half a beat each way (for --time, --frames); free: up to --max-points"},
-    {"--method", NULL, "rk4|dopri", FLAG_CHOICE, TRACE, ALL(flow.method), "rk4|dopri", "Runge-Kutta of fixed step (default) or Dormand-Prince, which keeps --tolerance"},
-    {"--tolerance", NULL, "MM", FLAG_ABOVE, TRACE, ALL(flow.tolerance), NULL, "error of a part of a step, for dopri (0.0001)"},
-    {"--attributes", NULL, "NAME", FLAG_CHOICE, TRACE, ALL(flow.attributes), "vorticity|curvature|all", "more per point: vorticity (1/s), curvature (1/mm) or all"},
-    {"--names", NULL, "U,V,W[,MASK]", FLAG_TEXT, ANY, ALL(flow.names), NULL, "arrays of a volume: three components, or one vector: VELOCITY[,MASK]"},
+    {"--seeds", NULL, "N", FLAG_COUNT, FLOWN, ALL(flow.seeds), NULL, "lines, each from a random place inside and a random time (one per 4 mm^3, 1000 to 30000)"},
+    {"--seed", NULL, "N", FLAG_COUNT, FLOWN, ALL(flow.seed), NULL, "of the random numbers; the same gives the same lines"},
+    {"--mask", NULL, "FILE|NAME", FLAG_TEXT, VOLUME, ALL(flow.mask), NULL, "where the vessel is: a volume of the same size, or an array of the FILE (>= 0.5 is inside)"},
+    {"--threshold", NULL, "M/S", FLAG_LENGTH, FLOWN, ALL(flow.threshold), NULL, "inside is where the speed reaches this at some time (without a mask: a tenth of the highest)"},
+    {"--streamlines", NULL, NULL, FLAG_SWITCH, FLOWN, ALL(flow.streamlines), NULL, "lines of the field frozen --at a time, instead of pathlines"},
+    {"--at", NULL, "MS", FLAG_NUMBER, FLOWN, ALL(flow.at), NULL, "the time of --streamlines (0)"},
+    {"--step", NULL, "MS|auto", FLAG_AUTO, FLOWN, ALL(flow.step), NULL, "time between the points of a line (period / 200; steady: half a voxel at the highest speed)"},
+    {"--max-points", NULL, "N", FLAG_COUNT, FLOWN, ALL(flow.max_points), NULL, "of a line (200)"},
+    {"--span", NULL, "NAME", FLAG_CHOICE, FLOWN, ALL(flow.span), "cycle|loop|free", "cycle: one beat, the same for all (default); loop: half a beat each way (for --time, --frames); free: up to --max-points"},
+    {"--method", NULL, "rk4|dopri", FLAG_CHOICE, FLOWN, ALL(flow.method), "rk4|dopri", "Runge-Kutta of fixed step (default) or Dormand-Prince, which keeps --tolerance"},
+    {"--tolerance", NULL, "MM", FLAG_ABOVE, FLOWN, ALL(flow.tolerance), NULL, "error of a part of a step, for dopri (0.0001)"},
+    {"--attributes", NULL, "NAME", FLAG_CHOICE, FLOWN, ALL(flow.attributes), "vorticity|curvature|all", "more per point: vorticity (1/s), curvature (1/mm) or all"},
+    {"--names", NULL, "U,V,W[,MASK]", FLAG_TEXT, VOLUME, ALL(flow.names), NULL, "arrays of a volume: three components, or one vector: VELOCITY[,MASK]"},
     {"--unit", NULL, "NAME", FLAG_CHOICE, ANY & ~CLI_INFO, ALL(flow.unit), "m/s|cm/s|mm/s", "of a volume's velocities: m/s (default), cm/s or mm/s"},
-    {"--axes", NULL, "mm|grid", FLAG_CHOICE, ANY, ALL(flow.axes), "mm|grid", "of a volume's velocities: those of its mm (default) or of its voxels"},
-    {"--spacing", NULL, "MM[,MM,MM]", FLAG_SPACING, ANY, ALL(flow.spacing), NULL, "size of a volume's voxels, where it tells none or a wrong one"},
-    {"--time-step", NULL, "MS", FLAG_ABOVE, ANY, ALL(flow.time_step), NULL, "between a volume's frames"},
+    {"--axes", NULL, "mm|grid", FLAG_CHOICE, VOLUME, ALL(flow.axes), "mm|grid", "of a volume's velocities: those of its mm (default) or of its voxels"},
+    {"--spacing", NULL, "MM[,MM,MM]", FLAG_SPACING, VOLUME, ALL(flow.spacing), NULL, "size of a volume's voxels, where it tells none or a wrong one"},
+    {"--time-step", NULL, "MS", FLAG_ABOVE, VOLUME, ALL(flow.time_step), NULL, "between a volume's frames"},
     {"--period", NULL, "MS", FLAG_ABOVE, CLI_INFO | CLI_FLOW, ALL(flow.period), NULL, "of all its frames, instead of --time-step"},
     {"--scene", NULL, "NAME", FLAG_SCENE, BOTH, ALL(scene), NULL, "embedded scene, when no FILE is given (aorta)"},
     {"--lines", NULL, "N", FLAG_COUNT, BOTH, ALL(lines), NULL, "lines of the embedded scene"},
@@ -117,8 +129,10 @@ static const flag_row flags[] = {
     {"--frames", NULL, "N", FLAG_COUNT, CLI_RENDER, ALL(frames), NULL, "a sequence of pictures or a video over one period, or from the first time to the last"},
     {"--fps", NULL, "N", FLAG_COUNT, SHOT, ALL(fps), NULL, "frames per second of a video (25)"},
     {"--backdrop", NULL, NULL, FLAG_SWITCH, CLI_RENDER, ALL(backdrop), NULL, "of velocity volumes and the scene flow: the highest speeds of the beat behind the lines, the vessel's outline around"},
-    {"--legend", NULL, "SIDE", FLAG_CHOICE, CLI_RENDER, ALL(legend), "off|left|right|bottom", "scale of the attribute's colours in the picture: off, left, right or bottom (off)"},
-    {"--legend-title", NULL, "TEXT", FLAG_TEXT, CLI_RENDER, ALL(legend_title), NULL, "above the scale (the attribute's name, and its unit if known)"},
+    {"--shared-occlusion", NULL, NULL, FLAG_SWITCH, DRAWN, ALL(shared_occlusion), NULL, "FILEs occlude each other, not only themselves; settings from occlusion to shading are then the first FILE's"},
+    {"--outline", NULL, "MESH", FLAG_TEXT, CLI_RENDER, ALL(outline), NULL, "the silhouette of a vessel's wall (mm) behind the lines and its outline around: STL, PLY, OBJ, VTP or VTK"},
+    {"--legend", NULL, "SIDE", FLAG_CHOICE, SHOT, ALL(legend), "off|left|right|bottom", "scale of each attribute's colours in the picture: off, left, right or bottom (off)"},
+    {"--legend-title", NULL, "TEXT", FLAG_TEXT, SHOT, ALL(legend_title), NULL, "above the first scale (the attribute's name, and its unit if known)"},
     {"--dump", NULL, "FILE.exr", FLAG_TEXT, SHOT, ALL(dump), NULL, "every image of the frame graph as 32-bit floats (OpenEXR)"},
     {"--timings", NULL, "FILE.json", FLAG_TEXT, SHOT, ALL(timings), NULL, "milliseconds of the frame and of each pass"},
     {"--columns", NULL, "N", FLAG_COUNT, CLI_SHEET, ALL(columns), NULL, "pictures in a row (3)"},
@@ -131,8 +145,8 @@ static const flag_row flags[] = {
     {"--colormap", NULL, "NAME", FLAG_CHOICE, BOTH, FILE_(colormap), COLOUR_MAPS, "of attributes: " COLOUR_MAPS " (viridis)"},
     {"--range", NULL, "A,B", FLAG_RANGE, BOTH, FILE_(range), NULL, "values at both ends of the colour map, or percentiles of all (2%,98%)"},
     {"--color", NULL, "NAME", FLAG_PAINT, CLI_VESSEL, FILE_(color), NULL, "layout (hue and saturation of the 2D layout), radius, order (of branching), distance, #rrggbb or the NAME of an attribute"},
-    {"--colormap", NULL, "NAME", FLAG_CHOICE, CLI_VESSEL, FILE_(colormap), COLOUR_MAPS, "of numbers: " COLOUR_MAPS " (viridis)"},
-    {"--range", NULL, "A,B", FLAG_RANGE, CLI_VESSEL, FILE_(range), NULL, "values at both ends of the colour map (those of the data)"},
+    {"--colormap", NULL, "NAME", FLAG_CHOICE, CLI_VESSEL, FILE_(colormap), COLOUR_MAPS, "of numbers: " COLOUR_MAPS " (viridis; with --risk coolwarm, red near, blue far)"},
+    {"--range", NULL, "A,B", FLAG_RANGE, CLI_VESSEL, FILE_(range), NULL, "values at both ends of the colour map (those of the data; with --risk twice that, 0)"},
     {"--every", NULL, "N", FLAG_COUNT, TRACE, FILE_(every), NULL, "keep each N-th line"},
     {"--min-length", NULL, "MM", FLAG_LENGTH, TRACE, FILE_(min_length), NULL, "drop shorter lines (files: none; of a volume: shorter than two voxels)"},
     {"--bundle", NULL, "NAME", FLAG_TEXT, BOTH, FILE_(bundle), NULL, "keep the lines of this group (TRX group, TT cluster)"},
@@ -415,6 +429,15 @@ static bool add_shape(parser *p, const flag_row *row, const char *value) {
     return true;
 }
 
+static bool add_target(parser *p, const flag_row *row, const char *value) {
+    cli_vessel_options *o = &p->options->vessel;
+    if (o->target_count == CLI_TARGETS)
+        return cli_fail("%s: more than %d paths and targets", row->name, CLI_TARGETS);
+    o->targets[o->target_count].path = row->choices != NULL;
+    o->targets[o->target_count++].text = value;
+    return true;
+}
+
 /* Two depths, the nearer first, or a ball. */
 static bool parse_focus(const char *text, cli_surface_options *out) {
     out->focus = text;
@@ -491,6 +514,8 @@ static bool set_flag(parser *p, const flag_row *row, const char *value) {
         return set_layout(row, value, field);
     case FLAG_SHAPE:
         return add_shape(p, row, value);
+    case FLAG_TARGET:
+        return add_target(p, row, value);
     case FLAG_FOCUS:
         ok = parse_focus(value, field);
         break;
@@ -567,11 +592,19 @@ static bool check_vessel(const cli_options *o) {
         return cli_fail("vessel: no output is asked for; write -o out.png");
     if (v->grid && (v->grid < 16 || v->grid > 512))
         return cli_fail("--grid: '%u' is not a value of it; write 16..512", v->grid);
-    if (v->path && v->target)
-        return cli_fail("--path: is given beside --target; leave one of them out");
+    if (v->target_count > 1 && !v->link)
+        return cli_fail("--path: is given beside --target; leave one of them out or write --link");
     const cli_source *source = o->file_count ? &o->files[0] : &o->all;
-    if (source->color && strcmp(source->color, "distance") == 0 && !v->path && !v->target)
+    if (source->color && strcmp(source->color, "distance") == 0 && !v->target_count)
         return cli_fail("--color: distance needs a --path or a --target");
+    if (v->risk >= 0 && !v->target_count)
+        return cli_fail("--risk: is a distance to a --path or a --target, and none is given");
+    if (v->shape_color && !v->shape_count)
+        return cli_fail("--shape-color: there is no shape; write --union, --subtract or "
+                        "--intersect");
+    if (v->shape_color && strcmp(v->shape_color, "nearest") != 0 && *v->shape_color != '#')
+        return cli_fail("--shape-color: '%s' is not a value of it; write #rrggbb or nearest",
+                        v->shape_color);
     if (v->cameras && (o->camera || o->frames || o->view || o->ortho))
         return cli_fail("--cameras: says where every picture is taken from; leave %s out",
                         o->camera   ? "--camera"
@@ -583,9 +616,18 @@ static bool check_vessel(const cli_options *o) {
 
 static bool check_surface(const cli_options *o) {
     const cli_surface_options *s = &o->surface;
-    bool flow = s->lines || (o->file_count == 0 && (!o->scene || strcmp(o->scene, "aorta") == 0));
-    if (o->file_count > 1)
+    bool volume = o->file_count > 0 && io_is_volume(o->files[0].path);
+    bool flow =
+        s->lines || volume || (o->file_count == 0 && (!o->scene || strcmp(o->scene, "aorta") == 0));
+    if (o->file_count > 1 && !volume)
         return cli_fail("%s: is a second MESH, and one is drawn at a time", o->files[1].path);
+    if (o->flow_flag && !volume)
+        return cli_fail("%s: is for velocity volumes, and none is given", o->flow_flag);
+    if (s->lines && volume)
+        return cli_fail("--lines: is given beside a volume, through which lines are traced; leave "
+                        "one of them out");
+    if (s->grid && (s->grid < 32 || s->grid > 512))
+        return cli_fail("--grid: '%u' is not a value of it; write 32..512", s->grid);
     if (o->file_count == 1 && o->scene)
         return cli_fail("--scene: is for embedded surfaces, and a MESH is given");
     if (!o->out && !o->dump && !o->timings && !o->save_camera && !s->vertices && !o->json)
@@ -651,12 +693,14 @@ bool cli_parse(cli_command_bit command, int argc, char **argv, cli_options *out)
     out->time = NAN;
     out->size[0] = command == CLI_COMPARE ? 640 : 1280;
     out->size[1] = command == CLI_COMPARE ? 480 : 960;
-    out->legend = "off";
-    out->all.colormap = "viridis";
+    out->legend = command == CLI_VESSEL ? NULL : "off";
+    out->all.colormap = command == CLI_VESSEL ? NULL : "viridis";
+    out->vessel.risk = -1;
     out->all.range[0] = (colour_end){command == CLI_VESSEL ? 0 : 2, true};
     out->all.range[1] = (colour_end){command == CLI_VESSEL ? 100 : 98, true};
     out->flow.threshold = -1;
     out->surface.brightness = -1;
+    out->surface.threshold = -1;
     out->all.min_length = -1;
     cli_parse_color("#f4f4f2", out->background);
     out->files = cli_new((size_t)argc + 1, sizeof *out->files);
@@ -726,7 +770,7 @@ void cli_print_flags(cli_command_bit command) {
                command == CLI_SURFACE
                    ? "Of the MESH and of the lines"
                    : "Of a FILE: before the first FILE for all FILEs, after a FILE for it alone");
-    if (command & (DRAWN | CLI_RENDER))
+    if (command & DRAWN)
         printf("\nSettings%s (default in parentheses)\n",
                command & (CLI_VESSEL | CLI_SURFACE) ? "" : ", for all FILEs or for one");
     for (int m = 0; m < MODULES; m++) { /* of those for lines few do anything to vessels */

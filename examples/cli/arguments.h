@@ -71,29 +71,40 @@ typedef struct cli_flow_options {
     bool streamlines;
 } cli_flow_options;
 
-#define CLI_STYLES "default|plain|ink|glow"
+#define CLI_STYLES "default|plain|ink|glow|stipple|hatch|crosshatch|layered|shadow|void"
 
 /* What `vessel` does with a tree. */
-enum { CLI_SHAPES = 16 };
+enum { CLI_SHAPES = 16, CLI_TARGETS = 6 };
 typedef struct cli_shape_option {
     uint32_t operation; /* SDV_UNION, ... */
     const char *text;
 } cli_shape_option;
+typedef struct cli_target_option {
+    bool path;
+    const char *text;
+} cli_target_option;
 typedef struct cli_vessel_options {
-    const char *style, *tree, *path, *target, *cameras, *weight;
-    const char *layout[2]; /* NAME.svg, NAME.json */
-    uint32_t grid, nodes;  /* cells; nodes of the embedded tree; 0: not given */
+    const char *style, *tree, *cameras, *weight;
+    cli_target_option targets[CLI_TARGETS]; /* several only with `link` */
+    uint32_t target_count;
+    double risk; /* mm; negative: not given */
+    bool link;
+    const char *shape_color; /* "nearest" or a colour; NULL: ivory */
+    const char *layout[2];   /* NAME.svg, NAME.json */
+    uint32_t grid, nodes;    /* cells; nodes of the embedded tree; 0: not given */
     cli_shape_option shapes[CLI_SHAPES];
     uint32_t shape_count;
 } cli_vessel_options;
 
 /* What `surface` does with a mesh. */
 typedef struct cli_surface_options {
-    const char *lines, *vertices, *baseline, *focus, *value, *flip;
+    const char *lines, *vertices, *baseline, *focus, *value, *flip, *colormap;
     double focus_at[4]; /* two numbers (depths, mm) or four (a ball) */
     int focus_numbers;  /* 0: none */
-    uint32_t smooth, subdivide;
-    double brightness; /* mm; 0: from the mesh; negative: not given */
+    uint32_t smooth, subdivide, grid;
+    double brightness;  /* mm; 0: from the mesh; negative: not given */
+    double contours[2]; /* mm, width of contours and suggestive contours; 0: none */
+    double threshold;   /* 1/mm^2, of the latter; negative: not given */
     bool normals;
 } cli_surface_options;
 
@@ -102,13 +113,14 @@ typedef struct cli_options {
     cli_source *files; /* owned */
     uint32_t file_count;
     const char *scene, *out, *dump, *timings, *backend, *camera, *save_camera, *view;
-    const char *legend, *legend_title;            /* "off" or a side; NULL: name and unit */
-    const char *title, *note;                     /* of a sheet */
+    const char *legend, *legend_title; /* "off", a side or NULL: automatic; NULL: name and unit */
+    const char *title, *note;          /* of a sheet */
+    const char *outline;               /* a mesh behind and around the lines */
     uint32_t lines, frames, fps, columns, widest; /* 0: not given */
     uint32_t size[2];
     double time; /* ms; NaN: not given */
     double background[4];
-    bool ortho, json, backdrop, help;
+    bool ortho, json, backdrop, shared_occlusion, help;
     cli_flow_options flow;
     cli_vessel_options vessel;
     cli_surface_options surface;

@@ -2,8 +2,7 @@
 #include "commands.h"
 #include "context.h"
 #include "dump.h"
-#include "image.h"
-#include "legend.h"
+#include "legends.h"
 #include "report.h"
 #include "session.h"
 #include "video.h"
@@ -50,48 +49,6 @@ char *cli_frame_path(const char *path, uint32_t frame) {
 
 /* ---- one frame -------------------------------------------------------------------------- */
 
-static const char *unit_of(const char *attribute) {
-    static const char *const units[][2] = {{"time", "ms"}, {"speed", "m/s"}, {"velocity", "m/s"}};
-    for (size_t i = 0; i < sizeof units / sizeof *units; i++) {
-        if (strcmp(units[i][0], attribute) == 0)
-            return units[i][1];
-    }
-    return NULL;
-}
-
-/* One legend for every scale that the sets are coloured by. */
-static bool draw_legends(const cli_options *options, const cli_scene *scene, picture *p) {
-    enum { MOST = 4, TITLE = 128 };
-    static const char *const sides[] = {"left", "right", "bottom"};
-    colour_map *maps = cli_new(MOST, sizeof *maps);
-    char titles[MOST][TITLE];
-    legend legends[MOST];
-    uint32_t count = 0, side = 0;
-    while (side < 2 && strcmp(sides[side], options->legend) != 0) /* one of the flag's choices */
-        side++;
-    for (uint32_t s = 0; maps && s < scene->count && count < MOST; s++) {
-        const cli_set *set = &scene->sets[s];
-        bool known = !set->value;
-        for (uint32_t before = 0; before < s && !known; before++)
-            known = cli_same_scale(&scene->sets[before], set);
-        if (known)
-            continue;
-        const char *unit = unit_of(set->value);
-        snprintf(titles[count], TITLE, "%s%s%s%s", set->value, unit ? " (" : "", unit ? unit : "",
-                 unit ? ")" : "");
-        colour_map_make(set->source->colormap, &maps[count]);
-        legends[count].map = &maps[count];
-        memcpy(legends[count].range, set->range, sizeof set->range);
-        legends[count].title =
-            options->legend_title && count == 0 ? options->legend_title : titles[count];
-        count++;
-    }
-    bool ok =
-        maps && (legend_draw(p, (legend_side)side, legends, count) || cli_fail("out of memory"));
-    free(maps);
-    return ok;
-}
-
 /* What is drawn around the lines of a frame. */
 typedef struct surroundings {
     const cli_options *options;
@@ -101,31 +58,14 @@ typedef struct surroundings {
     cli_video *video; /* NULL: a file for each picture */
 } surroundings;
 
-static bool surround(const surroundings *around, picture *p) {
+static bool surround(void *user, picture *p) {
+    const surroundings *around = user;
     return (!around->context.coverage || cli_context_compose(&around->context, around->paper, p)) &&
-           (strcmp(around->options->legend, "off") == 0 ||
-            draw_legends(around->options, around->scene, p));
-}
-
-static bool write_picture(const char *path, const surroundings *around, cli_session *session,
-                          const cli_shot *shot) {
-    char error[IMAGE_ERROR_SIZE];
-    picture p = {shot->width, shot->height, cli_session_picture(session)};
-    bool ok = p.pixels && surround(around, &p);
-    int channels = around->paper[3] < 1 ? 4 : 3;
-    for (size_t i = 0; ok && channels == 3 && i < (size_t)p.width * p.height; i++)
-        memmove(p.pixels + 3 * i, p.pixels + 4 * i, 3);
-    if (ok && around->video)
-        ok = cli_video_add(around->video, p.pixels);
-    else if (ok)
-        ok = image_write_png(path, p.width, p.height, p.pixels, channels, error) ||
-             cli_fail("%s", error);
-    picture_free(&p);
-    return ok;
+           cli_legends_draw(around->options, around->scene, NULL, 0, p);
 }
 
 /* Writes what one frame gave; frame -1: no sequence. */
-static bool write_frame(const surroundings *around, cli_session *session, const cli_shot *shot,
+static bool write_frame(surroundings *around, cli_session *session, const cli_shot *shot,
                         int64_t frame) {
     const char *paths[2] = {around->options->dump, around->options->out};
     bool ok = true;
@@ -136,7 +76,8 @@ static bool write_frame(const surroundings *around, cli_session *session, const 
         const char *path = numbered ? numbered : paths[i];
         ok = (frame < 0 || numbered) && cli_go_on() &&
              (i == 0 ? cli_dump(path, session, around->scene, shot, NULL, NULL)
-                     : write_picture(path, around, session, shot));
+                     : cli_write_picture(path, around->video, session, around->paper[3] >= 1,
+                                         surround, around));
         free(numbered);
     }
     return ok;
@@ -146,7 +87,7 @@ static bool write_frame(const surroundings *around, cli_session *session, const 
 
 /* Frame i of a sequence shows the first time plus i parts of the period. With timings a first frame
  * goes uncounted: it builds shaders and images. */
-static bool render_frames(const surroundings *around, cli_session *session, cli_shot *shot) {
+static bool render_frames(surroundings *around, cli_session *session, cli_shot *shot) {
     const cli_options *options = around->options;
     const cli_scene *scene = around->scene;
     uint32_t count = options->frames ? options->frames : 1;
@@ -175,7 +116,9 @@ static bool render_all(surroundings *around, cli_session *session, cli_shot *sho
                         options->fps ? options->fps : 25))
         return false;
     around->video = &video;
-    return cli_video_close(&video, render_frames(around, session, shot));
+    bool ok = cli_video_close(&video, render_frames(around, session, shot));
+    around->video = NULL;
+    return ok;
 }
 
 static bool write_json(const cli_options *options, cli_session *session, const cli_shot *shot) {
@@ -207,7 +150,8 @@ static bool render(const cli_options *options, const cli_scene *scene) {
     if (options->backdrop && scene->volume_count == 0)
         return cli_fail("--backdrop: shows what is behind the lines of a velocity volume or of "
                         "--scene flow; there is neither");
-    if (options->backdrop) /* the lines alone; paper comes with what is behind them */
+    if (options->backdrop ||
+        options->outline) /* the lines alone; paper comes with what is behind them */
         memset(shot.background, 0, sizeof shot.background);
     memset(&session, 0, sizeof session);
     bool ok = cli_context_make(scene, &shot, &around.context) &&

@@ -9,7 +9,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* The time that shows the embedded flow best: systole. */
+/* The time that shows the embedded flow best: systole. Of a volume's it is when half of the lines
+ * are half way: a quarter of beta. */
 #define EMBEDDED_TIME 180
 
 /* ---- numbers of vertices ---------------------------------------------------------------- */
@@ -35,20 +36,6 @@ static void write_numbers(cli_text *t, const char *name, const float *values, ui
     cli_text_print(t, "]");
 }
 
-/* The camera as the passes see it. */
-static void eye_of(const cli_shot *shot, float eye[4]) {
-    lao_camera camera, canonical;
-    lao_m4 view;
-    memset(&camera, 0, sizeof camera);
-    memcpy(camera.view, shot->view, sizeof shot->view);
-    memcpy(camera.projection, shot->projection, sizeof shot->projection);
-    camera.flags = LAO_CAMERA_ZERO_TO_ONE;
-    lao_camera_canonical(&camera, &canonical);
-    memcpy(&view, canonical.view, sizeof view);
-    lao_v4 e = vsf_eye(view, canonical.projection[15] > 0.5f ? 1.0f : 0.0f);
-    memcpy(eye, &e, sizeof e);
-}
-
 /* x of the look-up, as the vertex stage makes it. */
 static void nearness(const cli_wall *wall, float *near) {
     float v[VSF_SETTING_COUNT];
@@ -70,7 +57,7 @@ static bool write_vertices(const cli_wall *wall, const cli_shot *shot, const cha
     cli_text t = {NULL, 0, 0, false};
     if (!measure)
         return false;
-    eye_of(shot, eye);
+    cli_wall_eye(shot, eye);
     bool ok = vsf_measure(&wall->host, &wall->object.buffers, eye, 0, measure) == LAO_OK;
     cli_text_print(&t, "{\"triangles\":[");
     for (uint32_t i = 0; i < mesh->triangle_count && !t.broken; i++) {
@@ -125,7 +112,8 @@ static bool write_frame(cli_wall *wall, cli_session *session, const cli_shot *sh
         const char *path = numbered ? numbered : paths[i];
         ok = (frame < 0 || numbered) && cli_go_on() &&
              (i == 0 ? cli_dump(path, session, &wall->scene, shot, edit_planes, wall)
-                     : cli_write_picture(path, video, session, shot));
+                     : cli_write_picture(path, video, session, shot->background[3] >= 1,
+                                         cli_wall_legends, wall));
         free(numbered);
     }
     return ok;
@@ -174,8 +162,9 @@ static bool render(cli_wall *wall) {
     if (!cli_shot_make(options, &wall->scene, &shot))
         return false;
     if (isnan(options->time) && !options->frames && wall->lit && !options->surface.lines)
-        shot.time = EMBEDDED_TIME;
-    cli_wall_aim(wall, &shot);
+        shot.time = wall->source->path ? (float)wall->near.beta / 4 : EMBEDDED_TIME;
+    if (!cli_wall_aim(wall, &shot))
+        return false;
     cli_wall_time(wall, (double)shot.time, &update); /* all goes up with the object */
     bool ok =
         cli_write_camera(options, &shot.camera) &&
@@ -195,29 +184,41 @@ static bool render(cli_wall *wall) {
 
 /* ---- report ----------------------------------------------------------------------------- */
 
+/* The warning i of all about the mesh; false: there are fewer. */
+static bool warning_text(const cli_wall *wall, uint32_t i, char *text, size_t size) {
+    const bool mesh = (wall->contents.kinds & IO_MESH) != 0;
+    const io_mesh *triangles = &wall->contents.mesh;
+    const io_tree *tree = &wall->contents.tree;
+    const sdv_tree *built = &wall->vessel.tree;
+    uint32_t read = mesh ? triangles->warning_count : tree->warning_count;
+    if (i < read)
+        snprintf(text, size, "%s", mesh ? triangles->warnings[i] : tree->warnings[i]);
+    else if ((i -= read) < built->warning_count)
+        sdv_tree_warning_text(built, i, text, size);
+    else if ((i -= built->warning_count) < wall->mesh.warning_count)
+        vsf_mesh_warning_text(&wall->mesh, i, text, size);
+    else if ((i -= wall->mesh.warning_count) == 0 && wall->turned)
+        snprintf(text, size,
+                 "it is open and seemed inside out, and was turned round; --flip off leaves it");
+    else if (i == 0 && wall->widened)
+        snprintf(text, size,
+                 "%u nodes have a radius below %.3g mm and were given that; --grid makes it less",
+                 (unsigned)wall->widened, wall->thinnest);
+    else
+        return false;
+    return true;
+}
+
 static void add_warnings(const cli_wall *wall, cJSON *list) {
-    const io_mesh *read = &wall->contents.mesh;
-    uint32_t count = read->warning_count + wall->mesh.warning_count;
-    for (uint32_t i = 0; i < count + wall->turned; i++) {
-        char text[512];
-        if (i == count)
-            snprintf(
-                text, sizeof text,
-                "it is open and seemed inside out, and was turned round; --flip off leaves it");
-        else if (i < read->warning_count)
-            snprintf(text, sizeof text, "%s", read->warnings[i]);
-        else
-            vsf_mesh_warning_text(&wall->mesh, i - read->warning_count, text, sizeof text);
+    char text[512];
+    for (uint32_t i = 0; warning_text(wall, i, text, sizeof text); i++) {
         if (list)
             cJSON_AddItemToArray(list, cJSON_CreateString(text));
         else
             cli_warn(wall->name, text);
     }
-    if (wall->scene.count > 1 && !list) {
-        const cli_set *set = &wall->scene.sets[1];
-        for (uint32_t i = 0; i < set->lines.warning_count; i++)
-            cli_warn(set->name, set->lines.warnings[i]);
-    }
+    if (!list)
+        cli_scene_warn(&wall->scene);
 }
 
 static bool report(const cli_wall *wall) {
@@ -234,6 +235,9 @@ static bool report(const cli_wall *wall) {
         cJSON_AddNumberToObject(json, "beta", wall->near.beta);
         cJSON_AddItemToObject(json, "gamma", cli_json_float(wall->near.gamma));
         cJSON_AddNumberToObject(json, "steps", wall->near.step_count);
+        cJSON_AddNumberToObject(json, "bytes", /* of all distances */
+                                (double)wall->near.bytes * wall->near.vertex_count *
+                                    wall->near.step_count);
     }
     add_warnings(wall, cJSON_AddArrayToObject(json, "warnings"));
     return cli_write_json(NULL, json);

@@ -3,7 +3,7 @@
 #include "image.h"
 #include "report.h"
 #include "writing.h"
-#include "vessel.h"
+#include "vessel_page.h"
 #include "video.h"
 
 #include <math.h>
@@ -98,19 +98,62 @@ static bool edit_planes(void *user, cli_planes *planes) {
 
 /* ---- pictures ---------------------------------------------------------------------------- */
 
+/* What is drawn: one tree, or with --link one for each path and target. */
+typedef struct stage {
+    const cli_options *options; /* of the whole picture */
+    cli_tree *trees;
+    uint32_t count;
+    cli_shot shot;
+    cli_session sessions[CLI_TARGETS];
+    cli_page page;              /* with --link */
+    picture flats[CLI_TARGETS]; /* owned; layouts */
+    cli_video *video;
+} stage;
+
+static bool write_page(const char *path, stage *s) {
+    picture solids[CLI_TARGETS], whole;
+    bool opaque = !(s->options->background[3] < 1), ok = true;
+    memset(solids, 0, sizeof solids);
+    for (uint32_t i = 0; ok && i < s->count; i++)
+        ok = cli_session_picture(&s->sessions[i], &solids[i]);
+    ok = ok && (picture_make(s->options->size[0], s->options->size[1], &whole) ||
+                cli_fail("out of memory"));
+    if (ok) {
+        ok = cli_page_draw(&s->page, s->trees, &s->shot, solids, s->flats, &whole) &&
+             cli_write_pixels(path, s->video, &whole, opaque);
+        picture_free(&whole);
+    }
+    for (uint32_t i = 0; i < s->count; i++)
+        picture_free(&solids[i]);
+    return ok;
+}
+
+static bool draw_legend(void *user, picture *p) {
+    stage *s = user;
+    const char *side = s->options->legend;
+    return !side || strcmp(side, "off") == 0 || cli_tree_legend(&s->trees[0], side, p);
+}
+
+static bool write_view(const char *path, stage *s) {
+    return cli_write_picture(path, s->video, &s->sessions[0], s->shot.background[3] >= 1,
+                             draw_legend, s);
+}
+
 /* frame -1: the only one. */
-static bool write_frame(cli_tree *tree, cli_session *session, const cli_shot *shot,
-                        cli_video *video, int64_t frame) {
-    const char *paths[2] = {tree->options->dump, tree->options->out};
+static bool write_frame(stage *s, int64_t frame) {
+    const char *paths[2] = {s->options->dump, s->options->out};
     bool ok = true;
     for (int i = 0; i < 2 && ok; i++) {
         if (!paths[i])
             continue;
         char *numbered = frame < 0 ? NULL : cli_frame_path(paths[i], (uint32_t)frame);
         const char *path = numbered ? numbered : paths[i];
-        ok = (frame < 0 || numbered) && cli_go_on() &&
-             (i == 0 ? cli_dump(path, session, &tree->scene, shot, edit_planes, tree)
-                     : cli_write_picture(path, video, session, shot));
+        ok = (frame < 0 || numbered) && cli_go_on();
+        if (ok && i == 0)
+            ok = cli_dump(path, &s->sessions[0], &s->trees[0].scene, &s->shot, edit_planes,
+                          &s->trees[0]);
+        else if (ok)
+            ok = s->options->vessel.link ? write_page(path, s) : write_view(path, s);
         free(numbered);
     }
     return ok;
@@ -153,36 +196,43 @@ static void turn(const camera_pose *from, double part, camera_pose *out) {
     }
 }
 
-static bool draw_views(cli_tree *tree, cli_session *session, cli_shot *shot, const view_list *views,
-                       cli_video *video) {
-    const cli_options *options = tree->options;
+static bool draw_all(stage *s, uint32_t flags) {
+    bool ok = true;
+    for (uint32_t i = 0; ok && i < s->count; i++)
+        ok = cli_session_render(&s->sessions[i], &s->shot, flags);
+    return ok;
+}
+
+static bool draw_views(stage *s, const view_list *views) {
+    const cli_options *options = s->options;
     uint32_t flags = options->timings ? LAO_FRAME_TIMINGS : 0;
     cli_progress progress = {"rendering", options->out ? options->out : "", -1};
-    const camera_pose first = shot->camera;
-    bool ok = !flags || cli_session_render(session, shot, flags);
+    const camera_pose first = s->shot.camera;
+    bool ok = !flags || draw_all(s, flags);
     for (uint32_t i = 0; ok && i < views->count; i++) {
         if (views->poses)
-            shot->camera = views->poses[i];
+            s->shot.camera = views->poses[i];
         else if (i > 0)
-            turn(&first, (double)i / views->count, &shot->camera);
-        cli_shot_aim(&tree->scene, shot);
+            turn(&first, (double)i / views->count, &s->shot.camera);
+        cli_shot_aim(&s->trees[0].scene, &s->shot);
         if (views->count > 1)
             cli_progress_show(&progress, i, views->count);
-        ok = cli_session_render(session, shot, flags) &&
-             write_frame(tree, session, shot, video, views->numbered ? (int64_t)i : -1);
+        ok = draw_all(s, flags) && write_frame(s, views->numbered ? (int64_t)i : -1);
     }
     cli_progress_end(&progress);
     return ok;
 }
 
-static bool draw(cli_tree *tree, cli_session *session, cli_shot *shot, const view_list *views) {
-    const cli_options *options = tree->options;
+static bool draw(stage *s, const view_list *views) {
+    const cli_options *options = s->options;
     cli_video video;
     if (!cli_is_video(options->out))
-        return draw_views(tree, session, shot, views, NULL);
-    return cli_video_open(&video, options->out, shot->width, shot->height,
-                          options->fps ? options->fps : 25) &&
-           cli_video_close(&video, draw_views(tree, session, shot, views, &video));
+        return draw_views(s, views);
+    if (!cli_video_open(&video, options->out, options->size[0], options->size[1],
+                        options->fps ? options->fps : 25))
+        return false;
+    s->video = &video;
+    return cli_video_close(&video, draw_views(s, views));
 }
 
 bool cli_write_camera(const cli_options *options, const camera_pose *camera) {
@@ -194,28 +244,51 @@ bool cli_write_camera(const cli_options *options, const camera_pose *camera) {
     return ok;
 }
 
-static bool render(cli_tree *tree) {
-    const cli_options *options = tree->options;
-    cli_session session;
-    cli_shot shot;
+/* Layouts do not turn with the camera: they are drawn once. */
+static bool draw_flats(stage *s) {
+    bool ok = true;
+    for (uint32_t i = 0; ok && i < s->count; i++)
+        ok = (picture_make(s->shot.width, s->shot.height, &s->flats[i]) ||
+              cli_fail("out of memory")) &&
+             cli_flat_draw(&s->trees[i], &s->flats[i]);
+    return ok;
+}
+
+static bool prepare(stage *s, const view_list *views) {
+    const cli_options *options = s->options;
+    const char *side = options->legend;
+    bool scaled = side && strcmp(side, "off") != 0, ok = true;
+    for (uint32_t i = 0; ok && i < s->count; i++)
+        ok = cli_tree_prepare(&s->trees[i]);
+    if (ok && scaled && !s->trees[0].value)
+        ok = cli_fail("--legend: these colours show no number; write --color radius, order or "
+                      "distance, or the NAME of an attribute");
+    ok = ok && cli_shot_make(s->trees[0].options, &s->trees[0].scene, &s->shot);
+    if (ok && views->poses)
+        s->shot.camera = views->poses[0];
+    for (uint32_t i = 0; ok && i < s->count; i++)
+        cli_tree_fit_period(&s->trees[i], &s->shot);
+    return ok && cli_write_camera(options, &s->shot.camera) &&
+           (!options->vessel.link || !options->out || draw_flats(s));
+}
+
+static bool render(stage *s) {
+    const cli_options *options = s->options;
     view_list views;
     if (!options->out && !options->dump && !options->timings && !options->save_camera)
         return true;
     if (!read_views(options, &views))
         return false;
-    bool ok = cli_tree_prepare(tree) && cli_shot_make(options, &tree->scene, &shot);
-    if (ok && views.poses)
-        shot.camera = views.poses[0];
-    ok = ok && cli_write_camera(options, &shot.camera);
+    bool ok = prepare(s, &views);
     if (ok && (options->out || options->dump || options->timings)) {
-        ok = cli_session_open(&session, options->backend, &tree->scene, &shot,
-                              options->dump ? LAO_VIEW_KEEP_IMAGES : 0) &&
-             draw(tree, &session, &shot, &views);
+        for (uint32_t i = 0; ok && i < s->count; i++)
+            ok = cli_session_open(&s->sessions[i], options->backend, &s->trees[i].scene, &s->shot,
+                                  options->dump && i == 0 ? LAO_VIEW_KEEP_IMAGES : 0);
+        ok = ok && draw(s, &views);
         if (ok && options->timings) {
-            cJSON *json = cli_timings(&session, &shot);
+            cJSON *json = cli_timings(&s->sessions[0], &s->shot);
             ok = json && cli_write_json(options->timings, json);
         }
-        cli_session_close(&session);
     }
     free(views.poses);
     return ok;
@@ -239,7 +312,44 @@ static void add_warnings(const cli_tree *tree, cJSON *list) {
     }
 }
 
-static bool report(const cli_tree *tree) {
+/* Segments, counted as --tree does, and branches that are at risk, in ascending order. */
+static void add_target(const cli_tree *tree, cJSON *list) {
+    cJSON *target = cJSON_CreateObject();
+    float least, risk = (float)tree->risk;
+    cli_tree_at_risk(tree, &least);
+    cJSON_AddItemToArray(list, target);
+    cJSON_AddStringToObject(target, tree->aim->path ? "path" : "target", tree->aim->text);
+    cJSON_AddItemToObject(target, "least_distance",
+                          least < SDV_FAR ? cli_json_float(least) : cJSON_CreateNull());
+    if (!(tree->risk > 0))
+        return;
+    cJSON_AddItemToObject(target, "risk", cli_json_float(risk));
+    cJSON *segments = cJSON_AddArrayToObject(target, "segments");
+    for (uint32_t i = 0; i < tree->cone_count; i++) {
+        if (!(tree->cone_distances[i] < risk))
+            continue;
+        cJSON *item = cJSON_CreateObject();
+        cJSON_AddNumberToObject(item, "segment", i);
+        cJSON_AddItemToObject(item, "distance", cli_json_float(tree->cone_distances[i]));
+        cJSON_AddItemToArray(segments, item);
+    }
+    uint32_t nearest[CLI_NUMBERED], numbered = cli_nearest_branches(tree, nearest);
+    cJSON *branches = cJSON_AddArrayToObject(target, "branches");
+    for (uint32_t i = 0; i < tree->reduced.node_count; i++) {
+        if (!(tree->distances[i] < risk))
+            continue;
+        cJSON *item = cJSON_CreateObject();
+        cJSON_AddNumberToObject(item, "id", tree->reduced.ids[i]);
+        cJSON_AddItemToObject(item, "distance", cli_json_float(tree->distances[i]));
+        for (uint32_t k = 0; k < numbered; k++) {
+            if (nearest[k] == i)
+                cJSON_AddNumberToObject(item, "number", k + 1);
+        }
+        cJSON_AddItemToArray(branches, item);
+    }
+}
+
+static bool report(const cli_tree *tree, uint32_t count) {
     const sdv_tree_info *info = &tree->vessel.tree.info;
     cJSON *json = cJSON_CreateObject();
     cJSON_AddStringToObject(json, tree->source->path ? "path" : "scene", tree->name);
@@ -258,25 +368,42 @@ static bool report(const cli_tree *tree) {
         cJSON_AddNumberToObject(grid, "listed", tree->grid.id_count);
         cJSON_AddItemToObject(grid, "seconds", cli_json_float((float)tree->grid_seconds));
     }
-    if (tree->distances) {
-        float least = SDV_FAR;
-        for (uint32_t i = 0; i < tree->reduced.node_count; i++)
-            least = fminf(least, tree->distances[i]);
+    if (tree->aim) {
+        float least;
+        cli_tree_at_risk(tree, &least);
         cJSON_AddItemToObject(json, "least_distance",
                               least < SDV_FAR ? cli_json_float(least) : cJSON_CreateNull());
+        cJSON *targets = cJSON_AddArrayToObject(json, "targets");
+        for (uint32_t i = 0; i < count; i++)
+            add_target(&tree[i], targets);
     }
     add_warnings(tree, cJSON_AddArrayToObject(json, "warnings"));
     return cli_write_json(NULL, json);
 }
 
-static bool run(cli_tree *tree) {
-    const cli_vessel_options *o = &tree->options->vessel;
+/* With --link the trees are drawn in panels of the page. */
+static bool plan(stage *s, cli_options *panel) {
+    const cli_vessel_options *o = &s->options->vessel;
+    const cli_source *source = s->options->file_count ? &s->options->files[0] : &s->options->all;
+    const char *color = source->color ? source->color : o->target_count ? "distance" : "layout";
+    bool scaled = strcmp(color, "layout") != 0 && !cli_parse_color(color, (double[4]){0});
+    if (!o->link)
+        return true;
+    if (!cli_page_make(s->options, scaled, &s->page))
+        return false;
+    memcpy(panel->size, s->page.panel, sizeof panel->size);
+    return true;
+}
+
+static bool run(stage *s) {
+    const cli_vessel_options *o = &s->options->vessel;
+    const cli_tree *tree = &s->trees[0];
     if ((o->tree && !write_tree(tree, o->tree)) ||
         (o->layout[0] && !write_layout(tree, o->layout[0], true)) ||
-        (o->layout[1] && !write_layout(tree, o->layout[1], false)) || !render(tree))
+        (o->layout[1] && !write_layout(tree, o->layout[1], false)) || !render(s))
         return false;
-    if (tree->options->json)
-        return report(tree);
+    if (s->options->json)
+        return report(tree, s->count);
     add_warnings(tree, NULL);
     return true;
 }
@@ -285,12 +412,26 @@ int cli_vessel(const cli_options *options) {
     const cli_vessel_options *o = &options->vessel;
     const char *outputs[7] = {options->out, options->dump, options->timings, options->save_camera,
                               o->tree,      o->layout[0],  o->layout[1]};
-    cli_tree tree;
+    cli_options panel = *options; /* of one tree's picture */
+    cli_tree trees[CLI_TARGETS];
+    stage s;
     for (int i = 0; i < 7; i++) {
         if (!cli_writable(outputs[i]))
             return CLI_FAILED;
     }
-    bool ok = cli_tree_load(options, &tree) && run(&tree);
-    cli_tree_free(&tree);
+    memset(&s, 0, sizeof s);
+    memset(trees, 0, sizeof trees);
+    s.options = options;
+    s.trees = trees;
+    bool ok = plan(&s, &panel);
+    do
+        ok = ok && cli_tree_load(&panel, s.count, &trees[s.count]);
+    while (++s.count < o->target_count && ok);
+    ok = ok && run(&s);
+    for (uint32_t i = 0; i < s.count; i++) {
+        cli_session_close(&s.sessions[i]);
+        picture_free(&s.flats[i]);
+        cli_tree_free(&trees[i]);
+    }
     return ok ? CLI_OK : CLI_FAILED;
 }

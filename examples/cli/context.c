@@ -158,21 +158,41 @@ static bool project(const cli_scene *scene, const cli_shot *shot, const flow4d_h
     return ok;
 }
 
+/* How much of the brightest a silhouette without a volume shows. */
+#define SILHOUETTE 0.4
+
+/* The silhouette of --outline: to be outlined, and evenly tinted where nothing is brighter. */
+static void cover(const cli_scene *scene, const cli_shot *shot, cli_context *out) {
+    backdrop_mesh mesh = {
+        scene->outline.triangle_count, scene->outline.positions, scene->outline.triangles, {0}};
+    for (int i = 0; i < 16; i++) {
+        for (int k = 0; k < 4; k++)
+            mesh.to_clip[i] +=
+                (double)shot->projection[4 * k + i % 4] * (double)shot->view[i / 4 * 4 + k];
+    }
+    backdrop_cover(&mesh, shot->width, shot->height, 1, out->coverage);
+    backdrop_cover(&mesh, shot->width, shot->height, (float)(SILHOUETTE * out->brightest),
+                   out->intensity);
+}
+
 bool cli_context_make(const cli_scene *scene, const cli_shot *shot, cli_context *out) {
     size_t count = (size_t)shot->width * shot->height;
     memset(out, 0, sizeof *out);
-    if (scene->volume_count == 0)
+    if (scene->volume_count == 0 && scene->outline.triangle_count == 0)
         return true;
     out->intensity = cli_new(count, sizeof *out->intensity);
     out->coverage = cli_new(count, sizeof *out->coverage);
     float *room = cli_new(count, sizeof *room);
     cli_threads *threads = room ? cli_threads_start() : NULL;
     bool ok = out->intensity && out->coverage && threads && find_brightest(scene, &out->brightest);
+    if (!(out->brightest > 0))
+        out->brightest = 1;
     if (ok) {
         flow4d_host host = host_of(threads);
         memset(out->intensity, 0, count * sizeof *out->intensity);
         memset(out->coverage, 0, count * sizeof *out->coverage);
         ok = project(scene, shot, &host, room, out);
+        cover(scene, shot, out);
     }
     cli_threads_stop(threads);
     free(room);
@@ -194,7 +214,7 @@ bool cli_context_compose(const cli_context *context, const float paper[4], pictu
         look.high[k] = look.low[k] + (light ? -0.2 : 0.2);
         look.line[k] = light || !opaque ? 0.2 : 0.85;
     }
-    look.range[1] = context->brightest > 0 ? context->brightest : 1;
+    look.range[1] = context->brightest;
     return backdrop_compose(lines, opaque ? context->intensity : NULL, context->coverage, &look) ||
            cli_fail("out of memory");
 }

@@ -1,5 +1,5 @@
-/* What stands behind and around the lines of velocity volumes: the greatest speed of the beat,
- * projected, and the outline of the vessel (Koehler et al. 2017, 2.2). */
+/* What stands behind and around lines: the greatest speed of a volume's beat, projected, the
+ * silhouette of a mesh, and the outline of the vessel (Koehler et al. 2017, 2.2). */
 #ifndef LINEAO_CLI_CONTEXT_H
 #define LINEAO_CLI_CONTEXT_H
 
@@ -15,8 +15,8 @@ bool cli_context_keep_embedded(cli_scene *scene, const char *name);
 
 /* Projections of all volumes of a scene: width * height floats each, top row first. */
 typedef struct cli_context {
-    float *intensity, *coverage; /* owned; NULL: the scene has no volume */
-    double brightest;            /* speed (m/s) that the fastest hundredth of the vessel exceeds */
+    float *intensity, *coverage; /* owned; NULL: the scene has neither volume nor outline */
+    double brightest; /* speed (m/s) that the fastest hundredth of the vessel exceeds, or 1 */
 } cli_context;
 
 /* Projects with the camera of the shot. False: reported. Free in any case. */

@@ -220,6 +220,28 @@ static bool load_set(const cli_options *options, const cli_source *first, uint32
     return true;
 }
 
+static bool load_outline(const cli_options *options, cli_scene *scene) {
+    cli_outline *out = &scene->outline;
+    cli_source source = options->all;
+    io_contents contents;
+    if (!options->outline)
+        return true;
+    source.path = options->outline;
+    source.unit = NULL;
+    if (!cli_read(&source, IO_MESH, &contents))
+        return false;
+    io_mesh *mesh = &contents.mesh;
+    for (size_t i = 0; i < 3 * (size_t)mesh->vertex_count; i++)
+        mesh->positions[i] =
+            (float)((double)mesh->positions[i] + mesh->origin[i % 3] - scene->origin[i % 3]);
+    *out =
+        (cli_outline){mesh->vertex_count, mesh->triangle_count, mesh->positions, mesh->triangles};
+    mesh->positions = NULL; /* moved */
+    mesh->triangles = NULL;
+    io_contents_free(&contents);
+    return true;
+}
+
 bool cli_scene_load(const cli_options *options, cli_scene *out) {
     uint32_t count = options->file_count ? options->file_count : 1;
     cli_scene scene;
@@ -242,7 +264,8 @@ bool cli_scene_load(const cli_options *options, cli_scene *out) {
         ok = cli_fail("%s: is for velocity volumes, and no FILE is one", options->flow_flag);
     if (scene.beat[0] > scene.beat[1])
         scene.beat[0] = scene.beat[1] = 0;
-    if (!ok || !follow_time(options, &scene) || !cli_colour(&scene)) {
+    if (!ok || !follow_time(options, &scene) || !cli_colour(&scene) ||
+        !load_outline(options, &scene)) {
         cli_scene_free(&scene);
         return false;
     }
@@ -262,8 +285,21 @@ void cli_scene_free(cli_scene *scene) {
         free(scene->volumes[i].inside);
     }
     free(scene->volumes);
+    free(scene->outline.positions);
+    free(scene->outline.triangles);
     free(scene->sets);
     memset(scene, 0, sizeof *scene);
+}
+
+cli_set *cli_scene_add(cli_scene *scene) {
+    cli_set *sets = realloc(scene->sets, (scene->count + 1) * sizeof *sets);
+    if (!sets) {
+        cli_fail("out of memory");
+        return NULL;
+    }
+    scene->sets = sets;
+    memset(&sets[scene->count], 0, sizeof *sets);
+    return &sets[scene->count++];
 }
 
 void cli_scene_warn(const cli_scene *scene) {

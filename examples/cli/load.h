@@ -28,6 +28,13 @@ typedef struct cli_volume {
     float *inside;    /* owned; at least 0.5: in the vessel; smooth, so that its outline is */
 } cli_volume;
 
+/* What --outline shows. */
+typedef struct cli_outline {
+    uint32_t vertex_count, triangle_count;
+    float *positions;    /* owned; 3 per vertex, mm, relative to the scene's origin */
+    uint32_t *triangles; /* owned */
+} cli_outline;
+
 /* Everything that is drawn. Points are relative to `origin`, which is the first set's. */
 typedef struct cli_scene {
     const lao_module *module; /* NULL: lines alone */
@@ -37,13 +44,17 @@ typedef struct cli_scene {
     float direction[3], up[3]; /* of the automatic camera */
     cli_volume *volumes;       /* owned; none unless --backdrop asks for them */
     uint32_t volume_count;
-    double beat[2]; /* first and last time (ms); equal: none */
-    double period;  /* ms: of the first set that repeats, else from first to last time */
+    cli_outline outline; /* no triangles unless --outline asks for it */
+    double beat[2];      /* first and last time (ms); equal: none */
+    double period;       /* ms: of the first set that repeats, else from first to last time */
 } cli_scene;
 
 /* Loads what the options name. False: reported, nothing to free. */
 bool cli_scene_load(const cli_options *options, cli_scene *out);
 void cli_scene_free(cli_scene *scene);
+
+/* One more set behind those of a scene, all zero; it may move them. NULL: reported. */
+cli_set *cli_scene_add(cli_scene *scene);
 
 /* Prints the warnings of all files. */
 void cli_scene_warn(const cli_scene *scene);

@@ -50,15 +50,24 @@ static const char vessel_about[] =
     "The layout draws the tree flat (Lichtenberg 2019): each branch has a place across (hue) and "
     "a\n"
     "depth (saturation), and the picture shows the same colours, so that a branch in one is found\n"
-    "in the other. With a --path or --target, colours are distances to it.\n\n"
+    "in the other. With a --path or --target, colours are distances to it.\n"
+    "--link shows both beside each other. What comes nearer than --risk (15 mm) has a pattern in\n"
+    "both, is counted above them, and is listed by --json: segments (as --tree counts them) and\n"
+    "branches (as --layout numbers them); the nearest nine have numbers, 1 the nearest. Isolines\n"
+    "are where the ticks of the scale are.\n\n"
     "Without -o, --dump, --timings and --save-camera nothing is drawn and no GPU is opened.\n"
     "A dump holds, in mm: position.X .Y .Z, normal.X .Y .Z, segment.V (counts --tree; -1 nothing,\n"
-    "-2 a shape), mask.V, dmin.V (the nearest miss of the pixel's ray; 1e30: none), distance.V.\n";
+    "-2 a shape), mask.V, dmin.V (the nearest miss of the pixel's ray; 1e30: none), distance.V,\n"
+    "bgposition.X .Y .Z, bgnormal.X .Y .Z, guide.X .Y, uv.U .V.\n";
 
 static const char surface_about[] =
-    "A MESH is STL, PLY, OBJ, VTP or VTK; without one the program makes an aorta with a bulge, "
-    "and\n"
-    "the blood in it. Back faces are opaque, then come the lines, then front faces by what they\n"
+    "A MESH is STL, PLY, OBJ, VTP or VTK. A TREE (as lineao vessel takes it) or a velocity VOLUME\n"
+    "(as lineao flow takes it) may stand in its place: the wall is the tree's surface (--grid), "
+    "or\n"
+    "the border of the volume's mask, with its flow inside. Without any the program makes an "
+    "aorta\n"
+    "with a bulge, and the blood in it. Back faces are opaque, then come the lines, then front "
+    "faces by what they\n"
     "are: clear where they are flat towards the viewer, orange where they bulge, cyan where they\n"
     "are hollow; redder and greener near blood that is lit (Lawonn 2014). --set brightness says\n"
     "how much: it is a length, so that small vessels want less and large ones more (1.5 mm).\n\n"
@@ -90,6 +99,8 @@ static const command_row commands[] = {
      "  lineao render flow.vtp --time 120 -o systole.png               trails around 120 ms\n"
      "  lineao render flow.vtp --frames 200 --period 833 -o beat.mp4   one heart beat, in ffmpeg\n"
      "  lineao render --preset classic --strength 2 -o classic.png     settings are flags\n"
+     "  lineao render flow.vtp --outline artery.stl -o inside.png      a wall's silhouette around "
+     "them\n"
      "  lineao render --ssaa 1 --dump frame.exr --backend vk           every image as numbers\n"
      "  lineao render flow.h5 --color speed --seeds 5000 -o flow.png   traces the volume first\n",
      NULL},
@@ -118,13 +129,16 @@ static const command_row commands[] = {
      "  lineao vessel lung.vtp --unit cm --color radius -o radius.png\n"
      "  lineao vessel --target 20,10,0,12 --layout risk.json -o risk.png   distances to a tumour\n"
      "  lineao vessel --path -90,0,0:20,10,0 -o needle.png      distances to a needle's path\n"
+     "  lineao vessel --link --target 32,8,12,16 -o link.png    what is near a tumour, in 3D and "
+     "2D\n"
+     "  lineao vessel --link --path -90,0,0:20,10,0 --path 0,-90,0:20,10,0 -o paths.png --json\n"
      "  lineao vessel --subtract box:-200,0,0,0,200,200 -o cut.png          cut a corner away\n"
      "  lineao vessel tree.gxl --style ink --ortho --view coronal -o ink.png\n"
      "  lineao vessel --frames 120 -o turn.mp4                  one turn around it\n"
      "  lineao vessel tree.swc --cameras path.json -o f_%04d.png --dump f_%04d.exr\n"
      "  lineao vessel tree.swc --tree tree.json --layout layout.json       numbers alone\n",
      vessel_about},
-    {"surface", CLI_SURFACE, cli_surface, "[MESH] [--lines FILE] -o out.png",
+    {"surface", CLI_SURFACE, cli_surface, "[MESH|TREE|VOLUME...] [--lines FILE] -o out.png",
      "draw a vessel's wall around its blood flow",
      "  lineao surface -o aorta.png                               an aorta made by code, at "
      "systole\n"
@@ -134,6 +148,10 @@ static const command_row commands[] = {
      "file\n"
      "  lineao surface artery.stl --set brightness=0.8 --smooth 10 -o clear.png\n"
      "  lineao surface --scene aneurysm --baseline fresnel -o fresnel.png\n"
+     "  lineao surface tree.swc --contours 0.2 -o tree.png        the wall of a tree\n"
+     "  lineao surface flow.h5 --color speed --legend right -o flow.png     wall and flow of a "
+     "volume\n"
+     "  lineao surface --wall-colormap inferno --near-gamma 8 --legend right -o distance.png\n"
      "  lineao surface --focus 5,0,20,15 --depth-shadow on -o focus.png   sharp around a point\n"
      "  lineao surface artery.stl --vertices v.json                     numbers alone\n",
      surface_about},

@@ -152,7 +152,19 @@ bool cli_session_start(cli_session *session, const lao_backend *functions, const
            lao_view_create(session->context, &size, &session->view) == LAO_OK;
 }
 
+/* With several sessions another one's context may be current. */
+static bool use(cli_session *session) {
+#ifdef LINEAO_HAVE_GL
+    if (session->gl)
+        return host_gl_make_current(session->gl) ||
+               cli_fail("gl: the context cannot be made current");
+#endif
+    (void)session;
+    return true;
+}
+
 void cli_session_close(cli_session *session) {
+    use(session);
     lao_destroy(session->context);
     free(session->sets);
 #ifdef LINEAO_HAVE_GL
@@ -192,7 +204,7 @@ void cli_session_frame(const cli_session *session, const cli_shot *shot, uint32_
     frame.camera.flags = LAO_CAMERA_ZERO_TO_ONE;
     frame.sets = session->sets;
     frame.set_count = session->set_count;
-    frame.flags = frame_flags;
+    frame.flags = shot->frame_flags | frame_flags;
     memcpy(frame.background, shot->background, sizeof frame.background);
     memcpy(frame.sphere, shot->sphere, sizeof frame.sphere);
     frame.time = shot->time;
@@ -203,7 +215,7 @@ bool cli_session_render(cli_session *session, const cli_shot *shot, uint32_t fra
     lao_frame frame;
     cli_session_frame(session, shot, frame_flags, &frame);
     double start = now(NULL);
-    bool ok = cli_go_on() && submit(session, &frame);
+    bool ok = cli_go_on() && use(session) && submit(session, &frame);
     session->milliseconds = 1e3 * (now(NULL) - start);
     return ok;
 }
@@ -224,6 +236,8 @@ static void flip(void *rows, uint32_t height, size_t stride) {
 uint8_t *cli_session_texels(cli_session *session, const char *name, uint32_t level,
                             lao_read_info *info) {
     memset(info, 0, sizeof *info);
+    if (!use(session))
+        return NULL;
     session->quiet = true;
     lao_result result = lao_read_raw(session->context, session->view, name, level, NULL, 0, info);
     session->quiet = false;
@@ -243,6 +257,8 @@ uint8_t *cli_session_texels(cli_session *session, const char *name, uint32_t lev
 float *cli_session_image(cli_session *session, const char *name, uint32_t level,
                          lao_read_info *info) {
     memset(info, 0, sizeof *info);
+    if (!use(session))
+        return NULL;
     session->quiet = true;
     lao_result result = lao_read(session->context, session->view, name, level, NULL, 0, info);
     session->quiet = false;
@@ -261,14 +277,11 @@ float *cli_session_image(cli_session *session, const char *name, uint32_t level,
     return data;
 }
 
-uint8_t *cli_session_picture(cli_session *session) {
+bool cli_session_picture(cli_session *session, picture *out) {
     lao_read_info info;
     uint8_t *pixels = cli_session_texels(session, "out", 0, &info);
-    if (!pixels) {
-        if (!info.width)
-            cli_fail("%s: the frame graph has no picture", session->backend);
-        return NULL;
-    }
+    if (!pixels)
+        return info.width == 0 && cli_fail("%s: the frame graph has no picture", session->backend);
     flip(pixels, info.height, (size_t)info.width * 4);
     for (size_t i = 0; i < (size_t)info.width * info.height; i++) {
         uint8_t *p = pixels + 4 * i;
@@ -277,5 +290,6 @@ uint8_t *cli_session_picture(cli_session *session) {
             p[k] = (uint8_t)(value > 255 ? 255 : value);
         }
     }
-    return pixels;
+    *out = (picture){info.width, info.height, pixels};
+    return true;
 }

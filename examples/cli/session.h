@@ -4,12 +4,14 @@
 
 #include "camera.h"
 #include "load.h"
+#include "picture.h"
 
 /* What one frame is taken with. Matrices and sphere are relative to the scene's origin. */
 typedef struct cli_shot {
     camera_pose camera; /* mm, absolute */
     float view[16], projection[16], sphere[4], background[4], time;
     uint32_t width, height;
+    uint32_t frame_flags; /* LAO_FRAME_... of every frame */
 } cli_shot;
 
 /* The camera of the options, or one that fits the scene. False: reported. */
@@ -44,14 +46,15 @@ bool cli_session_start(cli_session *session, const lao_backend *functions, const
 void cli_session_frame(const cli_session *session, const cli_shot *shot, uint32_t frame_flags,
                        lao_frame *out);
 
-/* Draws one frame and waits for it. frame_flags: LAO_FRAME_... False: reported. */
+/* Draws one frame and waits for it. frame_flags: LAO_FRAME_... besides those of the shot. False:
+ * reported. */
 bool cli_session_render(cli_session *session, const cli_shot *shot, uint32_t frame_flags);
 
 /* The name of the device that draws. */
 const char *cli_session_device(const cli_session *session);
 
-/* The last frame as RGBA, not premultiplied, top row first, for free(). NULL: reported. */
-uint8_t *cli_session_picture(cli_session *session);
+/* The last frame, for picture_free. False: reported, nothing to free. */
+bool cli_session_picture(cli_session *session, picture *out);
 
 /* An image of the graph, if this plan has it. Values as lao_read gives them but with the top row
  * first, or raw texels as stored; for free(). NULL and width 0: there is no such image; NULL

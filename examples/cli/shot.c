@@ -38,6 +38,7 @@ static void fit_camera(const cli_options *options, const cli_scene *scene, doubl
     camera_fit_begin(&fit, scene->direction, scene->up, aspect, 0.05, options->ortho ? 0 : 30);
     for (uint32_t s = 0; s < scene->count; s++)
         camera_fit_add(&fit, scene->sets[s].lines.points, scene->sets[s].lines.point_count);
+    camera_fit_add(&fit, scene->outline.positions, scene->outline.vertex_count);
     camera_fit_end(&fit, out);
     for (int k = 0; k < 3; k++) {
         out->eye[k] += scene->origin[k];
@@ -70,6 +71,7 @@ bool cli_shot_make(const cli_options *options, const cli_scene *scene, cli_shot 
     out->time = (float)(!isnan(options->time) ? options->time
                         : options->frames     ? scene->beat[0]
                                               : 0);
+    out->frame_flags = options->shared_occlusion ? LAO_FRAME_SHARED_OCCLUSION : 0;
     for (int k = 0; k < 4; k++)
         out->background[k] = (float)options->background[k];
     find_sphere(scene, out->sphere);

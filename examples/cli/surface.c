@@ -1,17 +1,18 @@
 #include "surface.h"
 
 #include "camera.h"
+#include "io_volume.h"
+#include "legends.h"
 #include "report.h"
-#include "scene_surface.h"
 
 #include <math.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
 /* Few enough to see the wall behind them. */
 #define EMBEDDED_LINES 150
 #define EMBEDDED_WIDTH 1
-#define EMBEDDED_STEPS 20 /* of smoothing */
 
 /* One line per failure; warnings are in the mesh. */
 static void on_log(void *user, vsf_log_item item, lao_result result, const char *text) {
@@ -24,23 +25,82 @@ static void on_log(void *user, vsf_log_item item, lao_result result, const char 
 
 /* ---- lines ------------------------------------------------------------------------------ */
 
-/* The lines as `render` would load them, drawn where they are lit: as L14's highlight of whole
- * lines but the dark parts do not hide what is lit. */
-static bool load_lines(cli_wall *wall) {
+/* The speed of a point (m/s) by the array of that name, or by the length of "velocity". */
+static double speed_at(const io_attribute *array, uint32_t point) {
+    const float *v = array->data + (size_t)point * array->components;
+    double sum = 0;
+    for (uint32_t k = 0; k < array->components; k++)
+        sum += (double)v[k] * (double)v[k];
+    return sqrt(sum);
+}
+
+/* Times of a line's points: how long the blood takes to them from the first one. Behind a point
+ * where it stands still they are no numbers. */
+static void time_line(const io_lines *lines, const io_attribute *array, uint32_t line,
+                      float *times) {
+    double time = 0;
+    for (uint32_t i = lines->offsets[line]; i < lines->offsets[line + 1]; i++) {
+        const float *p = lines->points + 3 * (size_t)i;
+        if (i > lines->offsets[line]) {
+            double way = hypot(hypot((double)p[0] - (double)p[-3], (double)p[1] - (double)p[-2]),
+                               (double)p[2] - (double)p[-1]);
+            double speed = 0.5 * (speed_at(array, i - 1) + speed_at(array, i));
+            time = speed > 0 ? time + way / speed : (double)NAN; /* mm / (m/s) = ms */
+        }
+        times[i] = (float)time;
+    }
+}
+
+/* Steady lines without times get them from their speed. False: reported. */
+static bool make_times(cli_scene *scene, cli_set *set) {
+    io_lines *lines = &set->lines;
+    const io_attribute *array = NULL;
+    for (uint32_t i = 0; i < lines->point_attribute_count; i++) {
+        const char *name = lines->point_attributes[i].name;
+        if (strcmp(name, "speed") == 0 || strcmp(name, "velocity") == 0)
+            array = &lines->point_attributes[i];
+    }
+    if (set->times || !array)
+        return true;
+    io_attribute made = {cli_new(sizeof "time", 1), 1, cli_new(lines->point_count, sizeof(float))};
+    io_attribute *rows = NULL;
+    if (made.name && made.data) {
+        strcpy(made.name, "time");
+        for (uint32_t line = 0; line < lines->line_count; line++)
+            time_line(lines, array, line, made.data);
+        rows = realloc(lines->point_attributes, (lines->point_attribute_count + 1) * sizeof *rows);
+    }
+    if (!rows) {
+        free(made.name);
+        free(made.data);
+        return cli_fail("out of memory");
+    }
+    lines->point_attributes = rows;
+    rows[lines->point_attribute_count++] = made;
+    set->times = made.data;
+    for (uint32_t i = 0; i < lines->point_count; i++)
+        scene->beat[1] = fmax(scene->beat[1], isfinite(made.data[i]) ? (double)made.data[i] : 0);
+    scene->period = scene->beat[1];
+    return true;
+}
+
+/* What the options ask for as `render` would load it: the lines of a file, of a velocity volume
+ * with its mask, which becomes the mesh, or of the embedded flow. */
+static bool load_flow(cli_wall *wall, bool volume) {
     cli_options options = *wall->options;
     cli_source *source = &wall->line_source;
-    bool flow = !wall->source->path && strcmp(wall->name, "aorta") == 0;
-    if (!wall->options->surface.lines && !flow)
-        return true;
     *source = *wall->source;
+    if (volume) {
+        options.backdrop = true; /* keeps the mask */
+        options.flow.unit = source->unit;
+        return cli_scene_load(&options, &wall->scene);
+    }
     source->path = wall->options->surface.lines;
     source->unit = NULL;
-    if (!(source->settings.set & LAO_SET(trail)) && !(source->settings.trail > 0)) {
-        source->settings.trail = LAO_TRAIL_TAPER;
-        source->settings.set |= LAO_SET(trail);
-    }
     options.files = source;
     options.file_count = source->path ? 1 : 0;
+    options.time = NAN; /* times may be made below */
+    options.frames = 0;
     options.scene = "flow";
     options.lines = EMBEDDED_LINES;
     if (!source->path && !source->color)
@@ -50,122 +110,43 @@ static bool load_lines(cli_wall *wall) {
         source->settings.set |= LAO_SET(width);
     }
     options.all = *source;
-    return cli_scene_load(&options, &wall->scene);
+    return cli_scene_load(&options, &wall->scene) && make_times(&wall->scene, &wall->scene.sets[0]);
 }
 
-/* ---- mesh ------------------------------------------------------------------------------- */
-
-static bool smooth(cli_wall *wall) {
-    const cli_surface_options *o = &wall->options->surface;
-    vsf_smooth_desc desc;
-    vsf_mesh finer;
-    memset(&desc, 0, sizeof desc);
-    desc.steps = o->smooth;
-    if (!wall->source->path && !o->smooth) { /* marching cubes left stairs */
-        desc.steps = EMBEDDED_STEPS;
-        desc.uniform = 1;
+/* Streamlines of a steady flow run from their first point on, as L14's pathlines do. */
+static void start_lines(cli_set *set) {
+    float *times = (float *)(uintptr_t)set->times; /* ours: an attribute of the set */
+    for (uint32_t line = 0; line < set->lines.line_count; line++) {
+        uint32_t first = set->lines.offsets[line], end = set->lines.offsets[line + 1];
+        float start = first < end ? times[first] : 0;
+        for (uint32_t i = first; i < end; i++)
+            times[i] -= start;
     }
-    if (o->subdivide) {
-        if (vsf_mesh_subdivide(&wall->host, &wall->mesh, o->subdivide, &finer) != LAO_OK)
-            return false;
-        finer.warning_count = wall->mesh.warning_count;
-        memcpy(finer.warnings, wall->mesh.warnings, sizeof finer.warnings);
-        vsf_mesh_free(&wall->mesh);
-        wall->mesh = finer;
-    }
-    return !desc.steps || vsf_mesh_smooth(&wall->host, &wall->mesh, &desc) == LAO_OK;
 }
 
-static const io_attribute *find_array(const io_mesh *mesh, const char *name) {
-    for (uint32_t i = 0; i < mesh->vertex_attribute_count; i++) {
-        if (strcmp(mesh->vertex_attributes[i].name, name) == 0)
-            return &mesh->vertex_attributes[i];
-    }
-    return NULL;
-}
-
-/* Do all parts, being open, seem to face inward? */
-static bool is_inside_out(const vsf_mesh *mesh) {
-    for (uint32_t i = 0; i < mesh->warning_count; i++) {
-        if (mesh->warnings[i].item == VSF_LOG_PARTS_SUSPECT)
-            return mesh->warnings[i].count == mesh->info.parts;
-    }
-    return false;
-}
-
-/* Builds the mesh, and once more the other way round where that is asked for or seems right. */
-static bool build(cli_wall *wall, vsf_mesh_desc *desc) {
-    const char *flip = wall->options->surface.flip;
-    desc->flags = flip && strcmp(flip, "on") == 0 ? VSF_MESH_FLIP : 0;
-    if (vsf_mesh_build(&wall->host, desc, &wall->mesh) != LAO_OK)
-        return false;
-    if (flip || !is_inside_out(&wall->mesh))
+/* Lines are drawn where they are lit: as L14's highlight of whole lines but the dark parts do not
+ * hide what is lit. */
+static bool load_lines(cli_wall *wall) {
+    bool volume = wall->source->path && io_is_volume(wall->source->path);
+    bool flow = !wall->source->path && strcmp(wall->name, "aorta") == 0;
+    if (!wall->options->surface.lines && !flow && !volume)
         return true;
-    vsf_mesh_free(&wall->mesh);
-    wall->turned = true;
-    desc->flags = VSF_MESH_FLIP;
-    return vsf_mesh_build(&wall->host, desc, &wall->mesh) == LAO_OK;
-}
-
-/* In mm, about scene.origin, which is the lines' if there are any. */
-static bool read_mesh(cli_wall *wall) {
-    const io_mesh *mesh = &wall->contents.mesh;
-    const char *value = wall->options->surface.value;
-    vsf_attribute attribute;
-    vsf_mesh_desc desc;
-    if (!cli_read(wall->source, IO_MESH, &wall->contents))
+    if (!load_flow(wall, volume))
         return false;
-    const io_attribute *array = value ? find_array(mesh, value) : NULL;
-    if (value && !array)
-        return cli_fail("%s: its vertices have no array '%s' for --value; lineao info lists them",
-                        wall->name, value);
-    float *positions = cli_new(mesh->vertex_count, 3 * sizeof *positions);
-    if (!positions)
-        return false;
-    for (int k = 0; k < 3 && !wall->scene.count; k++)
-        wall->scene.origin[k] = mesh->origin[k] * mesh->millimetres;
-    for (size_t i = 0; i < 3 * (size_t)mesh->vertex_count; i++)
-        positions[i] =
-            (float)(((double)mesh->positions[i] + mesh->origin[i % 3]) * mesh->millimetres -
-                    wall->scene.origin[i % 3]);
-    memset(&desc, 0, sizeof desc);
-    desc.vertex_count = mesh->vertex_count;
-    desc.positions = positions;
-    desc.triangle_count = mesh->triangle_count;
-    desc.triangles = mesh->triangles;
-    desc.normals = wall->options->surface.normals ? mesh->normals : NULL;
-    if (array) {
-        attribute = (vsf_attribute){array->name, array->components, array->data};
-        desc.attributes = &attribute;
-        desc.attribute_count = 1;
-    }
-    bool ok = build(wall, &desc);
-    free(positions);
-    return ok;
-}
-
-static bool make_mesh(cli_wall *wall) {
-    scene_surface surface;
-    vsf_mesh_desc desc;
-    if (!scene_surface_make(wall->name, 0, &surface))
-        return cli_fail("%s: out of memory", wall->name);
-    memset(&desc, 0, sizeof desc);
-    desc.vertex_count = surface.vertex_count;
-    desc.positions = surface.positions;
-    desc.triangle_count = surface.triangle_count;
-    desc.triangles = surface.triangles;
-    memcpy(wall->scene.direction, surface.view_direction, sizeof wall->scene.direction);
-    memcpy(wall->scene.up, surface.up, sizeof wall->scene.up);
-    for (uint32_t i = 0; i < 3 * surface.vertex_count; i++)
-        surface.positions[i] = (float)((double)surface.positions[i] - wall->scene.origin[i % 3]);
-    bool ok = vsf_mesh_build(&wall->host, &desc, &wall->mesh) == LAO_OK;
-    scene_surface_free(&surface);
-    return ok;
+    cli_set *set = &wall->scene.sets[0];
+    lao_settings *s = &set->settings;
+    if (!volume) /* not our copy of the options */
+        set->source = &wall->line_source;
+    if (volume && !(s->period > 0))
+        start_lines(set);
+    if (!(s->set & LAO_SET(trail)) && !(s->trail > 0))
+        s->trail = LAO_TRAIL_TAPER;
+    return true;
 }
 
 /* ---- values and distances --------------------------------------------------------------- */
 
-/* --value: one number per vertex, and the range of its hues. */
+/* --value: one number per vertex, and the values at both ends of its hues. */
 static bool take_values(cli_wall *wall) {
     uint32_t n = wall->mesh.vertex_count;
     if (!wall->mesh.attribute_count)
@@ -197,28 +178,33 @@ static int by_value(const void *a, const void *b) {
     return (x > y) - (x < y);
 }
 
+/* The median over the vertices of the greater of both curvatures, 1/mm. */
+static bool find_curvature(cli_wall *wall) {
+    uint32_t n = wall->mesh.vertex_count;
+    float *curvatures = cli_new(n, 2 * sizeof *curvatures);
+    bool ok = curvatures && vsf_curvatures(&wall->host, &wall->mesh, curvatures, NULL) == LAO_OK;
+    for (uint32_t i = 0; ok && i < n; i++)
+        curvatures[i] =
+            fmaxf(fabsf(curvatures[2 * (size_t)i]), fabsf(curvatures[2 * (size_t)i + 1]));
+    if (ok)
+        qsort(curvatures, n, sizeof *curvatures, by_value);
+    wall->curvature = ok ? fmax((double)curvatures[n / 2], 1e-6) : 0;
+    free(curvatures);
+    return ok;
+}
+
 /* --brightness auto: a silhouette of the median curvature gets three quarters of full opacity. That
  * is 1.5 mm, as L14's users liked best, where vessels have a radius of 2 mm. */
 static bool find_brightness(cli_wall *wall) {
-    uint32_t n = wall->mesh.vertex_count;
     double wanted = wall->options->surface.brightness;
     bool given = (wall->settings.set & VSF_SET(brightness)) != 0;
-    if (wanted < 0 && (given || wall->source->path))
+    if (wanted < 0 && (given || wall->contents.kinds & IO_MESH))
         return true;
-    wall->settings.set |= VSF_SET(brightness);
-    wall->settings.brightness = (float)wanted;
-    if (wanted > 0)
-        return true;
-    float *curvatures = cli_new(n, 2 * sizeof *curvatures);
-    if (!curvatures)
+    if (!(wanted > 0) && !find_curvature(wall))
         return false;
-    bool ok = vsf_curvatures(&wall->host, &wall->mesh, curvatures, NULL) == LAO_OK;
-    for (uint32_t i = 0; i < n; i++)
-        curvatures[i] = fmaxf(fabsf(curvatures[2 * (size_t)i]), fabsf(curvatures[2 * i + 1]));
-    qsort(curvatures, n, sizeof *curvatures, by_value);
-    wall->settings.brightness = 0.75f / fmaxf(curvatures[n / 2], 1e-6f);
-    free(curvatures);
-    return ok;
+    wall->settings.brightness = (float)(wanted > 0 ? wanted : 0.75 / wall->curvature);
+    wall->settings.set |= VSF_SET(brightness);
+    return true;
 }
 
 /* A table larger than this is kept in half floats. */
@@ -232,7 +218,8 @@ static bool measure_distances(cli_wall *wall) {
     float values[VSF_SETTING_COUNT];
     vsf_near_desc desc;
     if (!set->times)
-        return cli_fail("%s: has no point array 'time' (ms), by which its lines are lit",
+        return cli_fail("%s: has no point array 'time' (ms), by which its lines are lit; of steady "
+                        "lines 'speed' or 'velocity' (m/s) would do",
                         set->name);
     lao_settings_resolve(vsf_module(), &wall->settings, values);
     memset(&desc, 0, sizeof desc);
@@ -272,18 +259,20 @@ bool cli_wall_time(cli_wall *wall, double time, lao_object_desc *update) {
     return changed;
 }
 
-void cli_wall_aim(cli_wall *wall, const cli_shot *shot) {
-    const cli_surface_options *o = &wall->options->surface;
-    const double *at = o->focus_at;
-    double depth = -(double)shot->view[14];
-    if (!o->focus_numbers)
+/* --wall-colormap: what is near is told by this map. */
+static void take_map(cli_wall *wall) {
+    const char *name = wall->options->surface.colormap;
+    if (!name)
         return;
-    for (int k = 0; k < 3; k++)
-        depth -= (double)shot->view[4 * k + 2] * (at[k] - wall->scene.origin[k]);
-    wall->settings.focus = 1;
-    wall->settings.focus_near = (float)(o->focus_numbers == 2 ? at[0] : depth - at[3]);
-    wall->settings.focus_far = (float)(o->focus_numbers == 2 ? at[1] : depth + at[3]);
-    wall->settings.set |= VSF_SET(focus) | VSF_SET(focus_near) | VSF_SET(focus_far);
+    colour_map_make(name, &wall->map); /* the flag's choices are its names */
+    for (int i = 0; i < VSF_MAP_COLORS; i++) {
+        double rgb[3];
+        colour_map_at(&wall->map, i / (VSF_MAP_COLORS - 1.0), rgb);
+        for (int k = 0; k < 3; k++)
+            wall->object.map[4 * i + k] = (float)rgb[k];
+    }
+    wall->settings.near_colors = VSF_NEAR_MAP;
+    wall->settings.set |= VSF_SET(near_colors);
 }
 
 /* ---- scene ------------------------------------------------------------------------------ */
@@ -325,6 +314,179 @@ static bool fill_set(cli_wall *wall) {
     return true;
 }
 
+/* ---- what depends on the camera --------------------------------------------------------- */
+
+static void focus(cli_wall *wall, const cli_shot *shot) {
+    const cli_surface_options *o = &wall->options->surface;
+    const double *at = o->focus_at;
+    double depth = -(double)shot->view[14];
+    if (!o->focus_numbers)
+        return;
+    for (int k = 0; k < 3; k++)
+        depth -= (double)shot->view[4 * k + 2] * (at[k] - wall->scene.origin[k]);
+    wall->settings.focus = 1;
+    wall->settings.focus_near = (float)(o->focus_numbers == 2 ? at[0] : depth - at[3]);
+    wall->settings.focus_far = (float)(o->focus_numbers == 2 ? at[1] : depth + at[3]);
+    wall->settings.set |= VSF_SET(focus) | VSF_SET(focus_near) | VSF_SET(focus_far);
+}
+
+void cli_wall_eye(const cli_shot *shot, float eye[4]) {
+    lao_camera camera, canonical;
+    lao_m4 view;
+    memset(&camera, 0, sizeof camera);
+    memcpy(camera.view, shot->view, sizeof shot->view);
+    memcpy(camera.projection, shot->projection, sizeof shot->projection);
+    camera.flags = LAO_CAMERA_ZERO_TO_ONE;
+    lao_camera_canonical(&camera, &canonical);
+    memcpy(&view, canonical.view, sizeof view);
+    lao_v4 e = vsf_eye(view, canonical.projection[15] > 0.5f ? 1.0f : 0.0f);
+    memcpy(eye, &e, sizeof e);
+}
+
+/* A point, nearer to the eye by `way`. */
+static void step_forward(const float *p, const float eye[4], double way, float *out) {
+    double to[3], size = 0;
+    for (int k = 0; k < 3; k++) {
+        to[k] = (double)eye[k] - (eye[3] > 0 ? (double)p[k] : 0);
+        size += to[k] * to[k];
+    }
+    for (int k = 0; k < 3; k++)
+        out[k] = (float)((double)p[k] + way * to[k] / sqrt(size));
+}
+
+static double length_of(const float *points, uint32_t count) {
+    double length = 0;
+    for (uint32_t i = 3; i < 3 * count; i += 3) {
+        double x = (double)points[i] - (double)points[i - 3];
+        double y = (double)points[i + 1] - (double)points[i - 2];
+        double z = (double)points[i + 2] - (double)points[i - 1];
+        length += sqrt(x * x + y * y + z * z);
+    }
+    return length;
+}
+
+/* Evens a line's points between its ends out: zero sets zigzag from triangle to triangle. */
+static void even_out(float *points, uint32_t count) {
+    for (int pass = 0; pass < 6; pass++) {
+        float before[3];
+        memcpy(before, points, sizeof before);
+        for (uint32_t i = 3; i + 3 < 3 * count; i++) {
+            float here = points[i];
+            points[i] = 0.25f * before[i % 3] + 0.5f * here + 0.25f * points[i + 3];
+            before[i % 3] = here;
+        }
+    }
+}
+
+/* Flat ink, a line's width before the wall that it lies on. Shorter lines than `least` (mm) are
+ * left out, and longer ones evened out if there is such a bound. */
+static bool fill_contours(cli_set *set, const vsf_polylines *lines, const float eye[4],
+                          double width, double least) {
+    static const float ink[4] = {0.1f, 0.1f, 0.12f, 1};
+    lao_settings *s = &set->settings;
+    io_lines *out = &set->lines;
+    memcpy(set->color, ink, sizeof ink);
+    s->width = (float)width;
+    s->ambient = 1;
+    s->set = LAO_SET(width) | LAO_SET(ambient) | LAO_SET(diffuse) | LAO_SET(specular) |
+             LAO_SET(occlusion) | LAO_SET(halo);
+    out->offsets = cli_new(lines->line_count + 1u, sizeof *out->offsets);
+    out->points = cli_new(lines->point_count, 3 * sizeof *out->points);
+    if (!out->offsets || !out->points)
+        return false;
+    out->offsets[0] = 0;
+    for (uint32_t line = 0; line < lines->line_count; line++) {
+        uint32_t first = lines->offsets[line], count = lines->offsets[line + 1] - first;
+        const float *points = lines->points + 3 * (size_t)first;
+        if (length_of(points, count) < least)
+            continue;
+        for (uint32_t i = 0; i < count; i++)
+            step_forward(points + 3 * (size_t)i, eye, width,
+                         out->points + 3 * (size_t)out->point_count++);
+        out->offsets[++out->line_count] = out->point_count;
+        if (least > 0)
+            even_out(out->points + 3 * (size_t)(out->point_count - count), count);
+    }
+    return true;
+}
+
+/* --contours, --suggestive-contours: a further set of lines. The latter, which ask for third
+ * derivatives, are kept where they are steep and long enough to tell of a shape. */
+static bool add_contours(cli_wall *wall, const float eye[4], vsf_feature feature) {
+    const cli_surface_options *o = &wall->options->surface;
+    bool suggestive = feature == VSF_SUGGESTIVE_CONTOURS;
+    double width = o->contours[feature], threshold = 0, least = 0;
+    vsf_polylines lines;
+    if (!(width > 0))
+        return true;
+    if (suggestive) {
+        if (!(wall->curvature > 0) && !find_curvature(wall))
+            return false;
+        least = o->threshold < 0 ? 1 / wall->curvature : 0;
+        threshold = o->threshold < 0 ? 0.3 * wall->curvature * wall->curvature : o->threshold;
+    }
+    if (vsf_feature_lines(&wall->host, &wall->mesh, &wall->object.buffers, eye, feature,
+                          (float)threshold, &lines) != LAO_OK)
+        return false;
+    cli_set *set = cli_scene_add(&wall->scene);
+    bool ok = set != NULL;
+    if (ok) {
+        set->source = wall->source;
+        set->name = wall->name;
+        set->module_settings[0] = &wall->settings;
+        ok = fill_contours(set, &lines, eye, width, least);
+    }
+    vsf_polylines_free(&lines);
+    return ok;
+}
+
+bool cli_wall_aim(cli_wall *wall, const cli_shot *shot) {
+    float eye[4];
+    focus(wall, shot);
+    cli_wall_eye(shot, eye);
+    return add_contours(wall, eye, VSF_CONTOURS) &&
+           add_contours(wall, eye, VSF_SUGGESTIVE_CONTOURS);
+}
+
+/* ---- legends ---------------------------------------------------------------------------- */
+
+/* The hues of the look-up on the side of y. */
+static void fill_hues(float y, colour_map *map) {
+    for (int i = 0; i < COLOUR_STEPS; i++) {
+        lao_v4 c = vsf_lookup((float)i / (COLOUR_STEPS - 1), y);
+        map->rgb[i][0] = (double)c.x;
+        map->rgb[i][1] = (double)c.y;
+        map->rgb[i][2] = (double)c.z;
+    }
+}
+
+bool cli_wall_legends(void *user, picture *p) {
+    cli_wall *wall = user;
+    bool value = wall->mesh.attribute_count > 0, map = wall->options->surface.colormap != NULL;
+    bool any = (value || wall->lit) && !wall->options->surface.baseline;
+    uint32_t count = !any ? 0 : map ? 1 : 2;
+    const char *name = value ? wall->options->surface.value : "mm to flow";
+    char titles[2][160];
+    legend list[2];
+    colour_map *hues = cli_new(2, sizeof *hues);
+    for (uint32_t i = 0; hues && i < count; i++) {
+        snprintf(titles[i], sizeof titles[i], "%s", i ? "concave" : name);
+        if (!map)
+            fill_hues(i ? -1.0f : 1.0f, &hues[i]);
+        list[i] =
+            (legend){map ? &wall->map : &hues[i], {wall->range[0], wall->range[1]}, titles[i]};
+        if (!value) { /* what is near is at the end of the map */
+            list[i].range[0] = (double)wall->settings.near_gamma;
+            list[i].range[1] = 0;
+        }
+    }
+    bool ok = hues && cli_legends_draw(wall->options, &wall->scene, list, count, p);
+    free(hues);
+    return ok;
+}
+
+/* ---- all -------------------------------------------------------------------------------- */
+
 /* Unless told, as many layers as the mesh has need of. */
 static void choose_layers(cli_wall *wall) {
     if (wall->settings.set & VSF_SET(layers))
@@ -361,14 +523,13 @@ bool cli_wall_load(const cli_options *options, cli_wall *out) {
     out->host.log = on_log;
     out->host.user = out;
     take_settings(out);
-    bool ok = load_lines(out) && (out->source->path ? read_mesh(out) : make_mesh(out)) &&
-              smooth(out) && find_brightness(out);
+    bool ok = load_lines(out) && cli_wall_mesh(out) && find_brightness(out);
     cli_progress_end(&out->progress);
     if (ok)
         choose_layers(out);
     return ok && add_set(out) && measure_distances(out) &&
            vsf_object_make(&out->host, &out->mesh, 0, &out->object) == LAO_OK && take_values(out) &&
-           fill_set(out);
+           fill_set(out) && (take_map(out), true);
 }
 
 void cli_wall_free(cli_wall *wall) {
@@ -376,6 +537,7 @@ void cli_wall_free(cli_wall *wall) {
     vsf_object_free(&wall->object);
     vsf_near_free(&wall->near);
     vsf_mesh_free(&wall->mesh);
+    io_vessel_free(&wall->vessel);
     io_contents_free(&wall->contents);
     cli_threads_stop(wall->threads);
     memset(wall, 0, sizeof *wall);

@@ -3,6 +3,7 @@
 #define LINEAO_CLI_SURFACE_H
 
 #include "dump.h"
+#include "io_vessel.h"
 #include "threads.h"
 
 typedef struct cli_wall {
@@ -12,8 +13,12 @@ typedef struct cli_wall {
     cli_threads *threads;
     cli_progress progress;
     vsf_host host;
-    io_contents contents; /* of the file; its mesh's warnings are kept */
-    bool turned;          /* the mesh is open, seemed inside out and was turned round */
+    io_contents contents; /* of the file; its mesh's or tree's warnings are kept */
+    io_vessel vessel;     /* of a file that holds a tree */
+    uint32_t widened;     /* nodes of it that were thinner than this, and were made so wide: */
+    double thinnest;      /* mm */
+    bool made;            /* the mesh is from marching cubes, with their stairs */
+    bool turned;          /* it is open, seemed inside out and was turned round */
     vsf_mesh mesh;        /* positions in mm, minus scene.origin */
     cli_scene scene;      /* a set that has the object, and one of lines unless there are none */
     cli_source line_source;
@@ -21,7 +26,9 @@ typedef struct cli_wall {
     bool lit; /* `near` is there */
     vsf_object object;
     vsf_settings settings;
-    double range[2]; /* of --value */
+    double range[2];  /* of --value */
+    double curvature; /* median, 1/mm; 0: not yet known */
+    colour_map map;   /* of --wall-colormap */
 } cli_wall;
 
 /* Reads or makes mesh and lines and all numbers that do not depend on the camera. False: reported;
@@ -29,10 +36,20 @@ typedef struct cli_wall {
 bool cli_wall_load(const cli_options *options, cli_wall *out);
 void cli_wall_free(cli_wall *wall);
 
+/* Reads or makes the mesh. Its origin is scene.origin, which it chooses unless there are lines.
+ * False: reported. */
+bool cli_wall_mesh(cli_wall *wall);
+
 /* Shows a time (ms). Returns whether the object's distances changed; then `update` is for
  * lao_object_update. */
 bool cli_wall_time(cli_wall *wall, double time, lao_object_desc *update);
-/* The settings that depend on the camera: --focus. */
-void cli_wall_aim(cli_wall *wall, const cli_shot *shot);
+/* What depends on the camera, once: --focus, and contours as further sets of lines. False:
+ * reported.
+ */
+bool cli_wall_aim(cli_wall *wall, const cli_shot *shot);
+/* The camera as the passes see it. */
+void cli_wall_eye(const cli_shot *shot, float eye[4]);
+/* A cli_picture_edit of a cli_wall: draws the legends that --legend asks for. */
+bool cli_wall_legends(void *user, picture *p);
 
 #endif

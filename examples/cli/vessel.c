@@ -66,6 +66,17 @@ static const sdv_attribute *find_attribute(const sdv_tree *tree, const char *nam
     return NULL;
 }
 
+/* How near a node is, 0 .. 1; half at a tenth of the tree's size (L19 Fig. 12). */
+static float nearness(const cli_tree *tree, uint32_t node) {
+    const float(*bounds)[3] = tree->vessel.tree.info.bounds;
+    float size = 0;
+    for (int k = 0; k < 3; k++)
+        size = fmaxf(size, bounds[1][k] - bounds[0][k]);
+    float part =
+        1 + 0.41421356f * fmaxf(cli_node_distance(tree, node), 0) / fmaxf(0.1f * size, 1e-6f);
+    return 1 / (part * part);
+}
+
 /* One number per node to weigh by; *weights stays NULL without --layout-weight. */
 static bool find_weights(const cli_tree *tree, float **weights) {
     const char *name = tree->options->vessel.weight;
@@ -74,13 +85,18 @@ static bool find_weights(const cli_tree *tree, float **weights) {
         return true;
     const sdv_attribute *attribute = find_attribute(t, name);
     bool radius = !attribute && strcmp(name, "radius") == 0;
-    if (!attribute && !radius)
+    bool near = !attribute && strcmp(name, "near") == 0;
+    if (near && !tree->target)
+        return cli_fail("--layout-weight: near what? write --path or --target");
+    if (!attribute && !radius && !near)
         return cli_fail("%s: its nodes have no attribute '%s' for --layout-weight", tree->name,
                         name);
     *weights = cli_new(t->node_count, sizeof **weights);
     uint32_t step = attribute && attribute->components ? attribute->components : 1;
     for (uint32_t i = 0; *weights && i < t->node_count; i++)
-        (*weights)[i] = radius ? t->nodes[i].w : attribute->values[(size_t)i * step];
+        (*weights)[i] = radius ? t->nodes[i].w
+                        : near ? nearness(tree, i)
+                               : attribute->values[(size_t)i * step];
     return *weights != NULL;
 }
 
@@ -103,16 +119,36 @@ static bool lay_out(cli_tree *tree) {
 }
 
 static bool measure(cli_tree *tree) {
+    const sdv_tree *t = &tree->vessel.tree;
     if (!tree->target)
         return true;
     tree->distances = cli_new(tree->reduced.node_count, sizeof *tree->distances);
-    return tree->distances && sdv_target_distances(&tree->host, tree->target, &tree->vessel.tree,
-                                                   &tree->reduced, NULL, tree->distances) == LAO_OK;
+    tree->cone_distances =
+        cli_new((size_t)t->segment_count + t->node_count, sizeof *tree->cone_distances);
+    bool *touched = cli_new(t->node_count, sizeof *touched);
+    bool ok = tree->distances && tree->cone_distances && touched &&
+              sdv_target_distances(&tree->host, tree->target, t, &tree->reduced,
+                                   tree->cone_distances, tree->distances) == LAO_OK;
+    tree->cone_count = t->segment_count;
+    if (ok)
+        memset(touched, 0, t->node_count * sizeof *touched);
+    for (uint32_t i = 0; ok && i < t->segment_count; i++)
+        touched[t->segments[i].parent] = touched[t->segments[i].child] = true;
+    for (uint32_t i = 0; ok && i < t->node_count; i++) { /* balls stand behind, as in the field */
+        if (!touched[i])
+            tree->cone_distances[tree->cone_count++] = cli_node_distance(tree, i);
+    }
+    free(touched);
+    return ok;
 }
 
-bool cli_tree_load(const cli_options *options, cli_tree *out) {
+bool cli_tree_load(const cli_options *options, uint32_t index, cli_tree *out) {
+    const cli_vessel_options *vessel = &options->vessel;
     memset(out, 0, sizeof *out);
     out->options = options;
+    out->aim = index < vessel->target_count ? &vessel->targets[index] : NULL;
+    if (out->aim)
+        out->risk = vessel->risk >= 0 ? vessel->risk : vessel->link ? 15 : 0;
     out->source = options->file_count ? &options->files[0] : &options->all;
     out->name = out->source->path ? out->source->path : "liver";
     out->progress = (cli_progress){"measuring", out->name, -1};
@@ -150,19 +186,23 @@ static const style_row styles[] = {
     {"glow", "surface_ambient", 0.55f},
     {"glow", "surface_diffuse", 0.5f},
     {"glow", "occlusion_reach", 8},
+    {"stipple", "style", SDV_STYLE_STIPPLE},
+    {"hatch", "style", SDV_STYLE_HATCH},
+    {"crosshatch", "style", SDV_STYLE_CROSSHATCH},
+    {"layered", "style", SDV_STYLE_LAYERED},
+    {"shadow", "style", SDV_STYLE_SHADOW},
+    {"void", "void_style", SDV_VOID_CHROMADEPTH},
 };
 
-static void add_style(const char *style, sdv_settings *settings) {
-    const lao_module *module = sdv_module();
+/* A setting's value, unless it is given. */
+static void imply(const char *name, float value, sdv_settings *settings) {
+    int setting = lao_setting_find(sdv_module(), name);
+    uint64_t bit = (uint64_t)1 << setting;
     float *values = (float *)(void *)((char *)settings + sizeof settings->set);
-    for (size_t i = 0; style && i < sizeof styles / sizeof *styles; i++) {
-        int setting = lao_setting_find(module, styles[i].setting);
-        uint64_t bit = (uint64_t)1 << setting;
-        if (strcmp(styles[i].style, style) != 0 || settings->set & bit)
-            continue;
-        values[setting] = styles[i].value;
-        settings->set |= bit;
-    }
+    if (settings->set & bit)
+        return;
+    values[setting] = value;
+    settings->set |= bit;
 }
 
 /* Six points of every node's sphere tell how far the tree reaches; of a union the corners of its
@@ -183,7 +223,7 @@ static bool make_points(cli_tree *tree, io_lines *lines) {
     for (uint32_t i = 0; i < 2 * shapes->count; i++) {
         const sdv_shape *s = &shapes->shapes[i / 2];
         const float *a = &s->a.x, *b = &s->b.x;
-        if (s->operation != SDV_UNION || s->kind == SDV_SHAPE_PLANE)
+        if (s->operation != SDV_UNION || s->kind == SDV_SHAPE_PLANE || s->kind == SDV_SHAPE_TREE)
             continue;
         for (int k = 0; k < 3; k++) {
             float half = s->kind == SDV_SHAPE_BALL ? s->a.w : b[k];
@@ -197,22 +237,66 @@ static bool make_points(cli_tree *tree, io_lines *lines) {
     return true;
 }
 
-/* The module's settings: those given, those of the style; a dump wants every ray's nearest miss. */
+enum { PERIOD_PIXELS = 9 };
+
+/* The module's settings: those given, those of the style, and what both want: texture coordinates
+ * for ink and marks; a dump wants them too, and every ray's nearest miss. */
 static void make_settings(const cli_tree *tree, sdv_settings *settings) {
+    const cli_options *options = tree->options;
+    const char *style = options->vessel.style;
     *settings = tree->source->vessel;
-    add_style(tree->options->vessel.style, settings);
-    if (tree->options->dump && !(settings->set & SDV_SET(near_miss))) {
-        settings->near_miss = SDV_NEAR_MISS_EXACT;
-        settings->set |= SDV_SET(near_miss);
+    for (size_t i = 0; style && i < sizeof styles / sizeof *styles; i++) {
+        if (strcmp(styles[i].style, style) == 0)
+            imply(styles[i].setting, styles[i].value, settings);
     }
+    if (options->vessel.link) { /* colours are to be read, in small panels */
+        imply("surface_ambient", 0.45f, settings);
+        imply("silhouette", 0.9f, settings);
+        imply("contour", 0.5f, settings);
+    }
+    bool inked = settings->style > 0 || settings->void_style > SDV_VOID_CHROMADEPTH;
+    if (options->dump)
+        imply("near_miss", SDV_NEAR_MISS_EXACT, settings);
+    if (inked || tree->risk > 0 || options->dump)
+        imply("parameterization", 2, settings);
+    if (settings->void_style > 0)
+        imply("parameterization", 1, settings);
+}
+
+void cli_tree_fit_period(cli_tree *tree, const cli_shot *shot) {
+    const camera_pose *c = &shot->camera;
+    double apart = 0, height = c->ortho_height;
+    if (!tree->options->vessel.style && !(tree->risk > 0))
+        return; /* numbers that do not depend on the camera */
+    for (int k = 0; k < 3; k++) {
+        double to = (double)shot->sphere[k] + tree->scene.origin[k] - c->eye[k];
+        apart += to * to;
+    }
+    if (c->fovy > 0)
+        height = 2 * fmax(sqrt(apart), (double)shot->sphere[3]) * tan(c->fovy * 0.00872664626);
+    imply("ssp_period", (float)fmin(fmax(PERIOD_PIXELS * height / shot->height, 1e-3), 1000),
+          &tree->settings);
+}
+
+/* The marker is plain: no void of its own, no ink. */
+static void add_marker(cli_tree *tree) {
+    cli_scene *scene = &tree->scene;
+    scene->sets[1] = scene->sets[0];
+    memset(&scene->sets[0].lines, 0, sizeof scene->sets[0].lines);
+    tree->marker.settings = tree->settings;
+    tree->marker.settings.parameterization = tree->marker.settings.style =
+        tree->marker.settings.void_style = 0;
+    scene->sets[0].object = &tree->marker.object.desc;
+    scene->sets[0].module_settings[0] = &tree->marker.settings;
+    scene->count = 2;
 }
 
 static bool make_scene(cli_tree *tree) {
     cli_scene *scene = &tree->scene;
-    cli_set *set = cli_new(1, sizeof *set);
+    cli_set *set = cli_new(2, sizeof *set);
     if (!set)
         return false;
-    memset(set, 0, sizeof *set);
+    memset(set, 0, 2 * sizeof *set);
     scene->sets = set;
     scene->count = 1;
     scene->module = sdv_module();
@@ -226,7 +310,24 @@ static bool make_scene(cli_tree *tree) {
     set->object = &tree->object.desc;
     make_settings(tree, &tree->settings);
     set->module_settings[0] = &tree->settings;
-    return make_points(tree, &set->lines);
+    if (!make_points(tree, &set->lines))
+        return false;
+    if (tree->aim && tree->options->vessel.link)
+        add_marker(tree);
+    return true;
+}
+
+/* Of the shapes: red below 0 stands for the nearest vessel's. */
+static bool add_shapes(cli_tree *tree) {
+    const char *color = tree->options->vessel.shape_color;
+    float colors[3 * CLI_SHAPES];
+    double rgb[4] = {-1, -1, -1, 1};
+    if (color)
+        cli_parse_color(color, rgb);
+    for (int i = 0; i < 3 * CLI_SHAPES; i++)
+        colors[i] = (float)rgb[i % 3];
+    return sdv_object_shapes(&tree->host, &tree->carving.shapes, color ? colors : NULL,
+                             &tree->object) == LAO_OK;
 }
 
 bool cli_tree_prepare(cli_tree *tree) {
@@ -240,8 +341,8 @@ bool cli_tree_prepare(cli_tree *tree) {
     tree->grid_seconds = now() - begin;
     ok = ok && cli_go_on() && cli_carving_make(tree) && cli_tree_colour(tree) &&
          sdv_object_make(&tree->host, &tree->grid, tree->colors, &tree->object) == LAO_OK;
-    if (ok && tree->carving.shapes.count)
-        ok = sdv_object_shapes(&tree->host, &tree->carving.shapes, NULL, &tree->object) == LAO_OK;
+    ok = ok && (!tree->carving.shapes.count || add_shapes(tree)) &&
+         (!tree->aim || !tree->options->vessel.link || cli_marker_make(tree));
     return ok && make_scene(tree);
 }
 
@@ -251,7 +352,9 @@ void cli_tree_free(cli_tree *tree) {
     free(tree->colors);
     sdv_grid_free(&tree->grid);
     free(tree->carving.fields);
+    cli_marker_free(&tree->marker);
     free(tree->distances);
+    free(tree->cone_distances);
     sdv_target_free(tree->target);
     sdv_layout_free(&tree->layout);
     sdv_reduced_free(&tree->reduced);

@@ -4,14 +4,26 @@
 
 #include "dump.h"
 #include "io_vessel.h"
+#include "picture.h"
 #include "threads.h"
 
-/* Shapes that the tree is combined with. */
+/* Shapes that a tree is combined with. */
 typedef struct cli_carving {
     sdv_shape list[CLI_SHAPES];
     float *fields; /* owned; samples of the shapes from files */
     sdv_shapes shapes;
 } cli_carving;
+
+/* A path or target as something to be drawn: a tree of its own, or one that is nothing but the
+ * shape added to it. */
+typedef struct cli_marker {
+    sdv_tree tree;
+    sdv_grid grid;
+    cli_carving carving;
+    uint8_t *colors; /* owned */
+    sdv_object object;
+    sdv_settings settings;
+} cli_marker;
 
 typedef struct cli_tree {
     const cli_options *options;
@@ -24,29 +36,52 @@ typedef struct cli_tree {
     io_vessel vessel;     /* positions in mm, minus vessel.origin */
     sdv_reduced reduced;
     sdv_layout layout;
-    sdv_target *target; /* NULL: neither --path nor --target */
-    float *distances;   /* owned; per reduced node, mm; NULL without a target */
+    const cli_target_option *aim; /* which of the options' targets; NULL: none */
+    sdv_target *target;           /* NULL: neither --path nor --target */
+    double risk;                  /* mm; 0: nothing is at risk */
+    float *distances;             /* owned; per reduced node, mm; NULL without a target */
+    float *cone_distances;        /* owned; of segments and balls, as --tree counts them */
+    uint32_t cone_count;
     cli_carving carving;
     sdv_grid grid;
     double grid_seconds;
-    uint8_t *colors; /* owned; 8 per cone; NULL: one colour */
+    uint8_t *colors;   /* owned; 8 per cone */
+    const char *value; /* what the colours show; NULL: no number */
+    double range[2];   /* its values at both ends of the colour map */
+    const char *colormap;
     sdv_object object;
     sdv_settings settings;
-    cli_scene scene; /* one set that has the object */
+    cli_marker marker; /* of the target, where it is drawn */
+    cli_scene scene;   /* a set that has the object; before it one of the marker */
 } cli_tree;
 
-/* Reads or makes the tree, and what the options ask for but the field. False: reported; free it in
- * any case. */
-bool cli_tree_load(const cli_options *options, cli_tree *out);
+/* Reads or makes the tree, and what the options ask for but the field. index: of the path or target
+ * that is measured to. False: reported; free it in any case. */
+bool cli_tree_load(const cli_options *options, uint32_t index, cli_tree *out);
 /* Then: field, colours, object and scene, for rendering. False: reported. */
 bool cli_tree_prepare(cli_tree *tree);
+/* Makes the period of ink and marks a number of pixels of the shot, unless it is given. */
+void cli_tree_fit_period(cli_tree *tree, const cli_shot *shot);
 void cli_tree_free(cli_tree *tree);
 
 /* Reads --subtract and its like into tree->carving. False: reported. */
 bool cli_carving_make(cli_tree *tree);
-/* Reads --path and --target into tree->target. False: reported. */
+/* Reads tree->aim into tree->target. False: reported. */
 bool cli_target_make(cli_tree *tree);
-/* Colours of the cones' ends, as the source says. False: reported. */
+/* Makes tree->marker of tree->aim. False: reported. */
+bool cli_marker_make(cli_tree *tree);
+void cli_marker_free(cli_marker *marker);
+/* Signed distance of a node's ball to the target, mm. */
+float cli_node_distance(const cli_tree *tree, uint32_t node);
+/* Colours of the cones' ends, as the source says; what is at risk is marked. False: reported. */
 bool cli_tree_colour(cli_tree *tree);
+/* The scale of the colours beside a picture, at a side ("left", ...). False: reported. */
+bool cli_tree_legend(const cli_tree *tree, const char *side, picture *p);
+
+/* The 2D layout as a picture, in the colours of the tree; with a target on the distances between
+ * (L19 5, Fig. 10). False: reported. */
+bool cli_flat_draw(const cli_tree *tree, picture *p);
+/* Where the edge of a branch (reduced node) has its middle in such a picture, px. */
+void cli_flat_place(const cli_tree *tree, const uint32_t size[2], uint32_t branch, double out[2]);
 
 #endif

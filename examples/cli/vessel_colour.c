@@ -1,7 +1,7 @@
 /* Colours of a tree's segments: by the 2D layout, or by a number through a colour map. */
 #include "vessel.h"
 
-#include "colour.h"
+#include "legend.h"
 #include "report.h"
 
 #include <math.h>
@@ -71,6 +71,11 @@ static bool unknown(const cli_tree *tree, const char *name) {
                     tree->name, name, names);
 }
 
+float cli_node_distance(const cli_tree *tree, uint32_t node) {
+    const lao_v4 *n = &tree->vessel.tree.nodes[node];
+    return sdv_target_point(tree->target, lao_v3_make(n->x, n->y, n->z)) - n->w;
+}
+
 /* False: reported. */
 static bool find_values(const cli_tree *tree, const char *name, double *values) {
     const sdv_tree *t = &tree->vessel.tree;
@@ -91,12 +96,9 @@ static bool find_values(const cli_tree *tree, const char *name, double *values) 
     if (order)
         branch_orders(t, nodes);
     for (uint32_t i = 0; i < t->node_count && !order; i++) {
-        const lao_v4 *n = &t->nodes[i];
-        nodes[i] = radius ? (double)n->w
-                   : distance
-                       ? (double)sdv_target_point(tree->target, lao_v3_make(n->x, n->y, n->z)) -
-                             (double)n->w
-                       : magnitude(at, i);
+        nodes[i] = radius     ? (double)t->nodes[i].w
+                   : distance ? (double)cli_node_distance(tree, i)
+                              : magnitude(at, i);
     }
     put_nodes(tree, nodes, values);
     free(nodes);
@@ -111,19 +113,34 @@ static void put(uint8_t *to, const double rgb[3]) {
     to[3] = 255;
 }
 
+/* Distances with a risk: its threshold is the middle of the map, the near side red. */
+static void choose_scale(cli_tree *tree, double *values, uint32_t count) {
+    const colour_end *ends = tree->source->range;
+    bool whole = ends[0].percent && ends[0].value == 0 && ends[1].percent && ends[1].value == 100;
+    bool risky = tree->risk > 0 && strcmp(tree->value, "distance") == 0;
+    tree->colormap = tree->source->colormap ? tree->source->colormap
+                     : risky                ? "coolwarm"
+                                            : "viridis";
+    tree->range[0] = 2 * tree->risk;
+    tree->range[1] = 0;
+    if (!risky || !whole)
+        colour_range(values, count, ends, tree->range);
+}
+
 static bool colour_values(cli_tree *tree, const char *name) {
     uint32_t count = 2 * tree->grid.cone_count;
-    double *values = cli_new(2 * (size_t)count, sizeof *values), range[2];
+    double *values = cli_new(2 * (size_t)count, sizeof *values);
     colour_map *map = cli_new(1, sizeof *map);
     bool ok = values && map && find_values(tree, name, values);
     if (ok) {
         memcpy(values + count, values, count * sizeof *values); /* is reordered */
-        colour_range(values + count, count, tree->source->range, range);
-        colour_map_make(tree->source->colormap, map);
+        tree->value = name;
+        choose_scale(tree, values + count, count);
+        colour_map_make(tree->colormap, map);
     }
     for (uint32_t i = 0; ok && i < count; i++) {
         double rgb[3];
-        colour_map_at(map, (values[i] - range[0]) / (range[1] - range[0]), rgb);
+        colour_map_at(map, (values[i] - tree->range[0]) / (tree->range[1] - tree->range[0]), rgb);
         put(tree->colors + 4 * (size_t)i, rgb);
     }
     free(map);
@@ -131,22 +148,96 @@ static bool colour_values(cli_tree *tree, const char *name) {
     return ok;
 }
 
+/* Alpha below 1/2 where the distance between a cone's ends is below the risk, and all along a cone
+ * that comes nearer between its ends. `span`: the most that two ends differ by, so that no place
+ * where the risk begins is lost to the 8 bits. */
+static void mark(cli_tree *tree, const float *ends, float span) {
+    float risk = (float)tree->risk;
+    for (uint32_t i = 0; i < 2 * tree->grid.cone_count; i++) {
+        const float *pair = ends + (i & ~1u);
+        bool between = tree->cone_distances[i / 2] < risk && !(pair[0] < risk) && !(pair[1] < risk);
+        float alpha = 127.5f + 127.5f * (ends[i] - risk) / span;
+        tree->colors[4 * (size_t)i + 3] =
+            between ? 0 : (uint8_t)(fminf(fmaxf(alpha, 0), 255) + (ends[i] < risk ? 0 : 0.5f));
+    }
+}
+
+static bool mark_risk(cli_tree *tree) {
+    uint32_t count = 2 * tree->grid.cone_count;
+    float *ends = cli_new(count, sizeof *ends), span = 1e-6f;
+    for (uint32_t i = 0; ends && i < count; i++) {
+        ends[i] = cli_node_distance(tree, tree->grid.cone_nodes[i]);
+        span = i % 2 ? fmaxf(span, fabsf(ends[i] - ends[i - 1])) : span;
+    }
+    if (ends)
+        mark(tree, ends, span);
+    free(ends);
+    return ends != NULL;
+}
+
+/* What a number is measured in, as far as is known. */
+static const char *unit_of(const char *value) {
+    return strcmp(value, "distance") == 0 || strcmp(value, "radius") == 0 ? " (mm)" : "";
+}
+
+/* A map whose low end shows the greater value is turned round, so that numbers rise. */
+static void rise(colour_map *map, double range[2]) {
+    double low = range[1];
+    if (!(range[0] > range[1]))
+        return;
+    range[1] = range[0];
+    range[0] = low;
+    for (int i = 0; i < COLOUR_STEPS / 2; i++) {
+        for (int k = 0; k < 3; k++) {
+            double *other = &map->rgb[COLOUR_STEPS - 1 - i][k], rgb = *other;
+            *other = map->rgb[i][k];
+            map->rgb[i][k] = rgb;
+        }
+        colour_lab lab = map->lab[i];
+        map->lab[i] = map->lab[COLOUR_STEPS - 1 - i];
+        map->lab[COLOUR_STEPS - 1 - i] = lab;
+    }
+}
+
+bool cli_tree_legend(const cli_tree *tree, const char *side, picture *p) {
+    char title[128];
+    double range[2] = {tree->range[0], tree->range[1]};
+    colour_map *map = cli_new(1, sizeof *map);
+    if (!map)
+        return false;
+    colour_map_make(tree->colormap, map);
+    rise(map, range);
+    snprintf(title, sizeof title, "%s%s", tree->value, unit_of(tree->value));
+    const char *own = tree->options->legend_title;
+    const legend one = {map, {range[0], range[1]}, own ? own : title};
+    legend_side where = strcmp(side, "left") == 0    ? LEGEND_LEFT
+                        : strcmp(side, "right") == 0 ? LEGEND_RIGHT
+                                                     : LEGEND_BOTTOM;
+    bool ok = legend_draw(p, where, &one, 1) || cli_fail("out of memory");
+    free(map);
+    return ok;
+}
+
+static bool colour_alike(cli_tree *tree, const double *one) {
+    for (uint32_t i = 0; i < 2 * tree->grid.cone_count; i++) {
+        double rgb[3];
+        if (!one)
+            layout_colour(tree, tree->grid.cone_nodes[i], rgb);
+        put(tree->colors + 4 * (size_t)i, one ? one : rgb);
+    }
+    return true;
+}
+
 bool cli_tree_colour(cli_tree *tree) {
     const char *color = tree->source->color;
-    uint32_t count = 2 * tree->grid.cone_count;
     double rgb[4];
-    tree->colors = cli_new(count, 4);
+    tree->colors = cli_new(2 * (size_t)tree->grid.cone_count, 4);
     if (!tree->colors)
         return false;
     if (!color)
         color = tree->target ? "distance" : "layout";
     bool one = cli_parse_color(color, rgb);
-    if (!one && strcmp(color, "layout") != 0)
-        return colour_values(tree, color);
-    for (uint32_t i = 0; i < count; i++) {
-        if (!one)
-            layout_colour(tree, tree->grid.cone_nodes[i], rgb);
-        put(tree->colors + 4 * (size_t)i, rgb);
-    }
-    return true;
+    bool ok = one || strcmp(color, "layout") == 0 ? colour_alike(tree, one ? rgb : NULL)
+                                                  : colour_values(tree, color);
+    return ok && (!(tree->risk > 0) || mark_risk(tree));
 }

@@ -69,18 +69,18 @@ static bool point_target(cli_tree *tree, const double *numbers, uint32_t count, 
     return ok;
 }
 
-/* "x,y,z:x,y,z..." */
-static bool path_target(cli_tree *tree, const char *text) {
-    uint32_t count = 1;
+/* The points of "x,y,z:x,y,z...", for free(). NULL: reported. */
+static double *read_path(const char *text, uint32_t *count) {
+    *count = 1;
     for (const char *c = text; *c; c++)
-        count += *c == ':';
-    double *numbers = cli_new(count, 3 * sizeof *numbers);
+        *count += *c == ':';
+    double *numbers = cli_new(*count, 3 * sizeof *numbers);
     char *copy = cli_new(strlen(text) + 1, 1);
     bool ok = numbers && copy, right = true;
     if (ok)
         strcpy(copy, text);
     char *at = copy;
-    for (uint32_t i = 0; ok && right && i < count; i++) {
+    for (uint32_t i = 0; ok && right && i < *count; i++) {
         char *end = at + strcspn(at, ":");
         *end = '\0';
         right = cli_numbers(at, numbers + 3 * (size_t)i, 3);
@@ -88,8 +88,16 @@ static bool path_target(cli_tree *tree, const char *text) {
     }
     if (ok && !right)
         ok = cli_fail("--path: '%s' is not a value of it; write X,Y,Z:X,Y,Z...", text);
-    ok = ok && point_target(tree, numbers, count, 0);
     free(copy);
+    if (!ok)
+        free(numbers);
+    return ok ? numbers : NULL;
+}
+
+static bool path_target(cli_tree *tree, const char *text) {
+    uint32_t count;
+    double *numbers = read_path(text, &count);
+    bool ok = numbers && point_target(tree, numbers, count, 0);
     free(numbers);
     return ok;
 }
@@ -110,22 +118,23 @@ static bool file_target(cli_tree *tree, const char *path) {
 }
 
 bool cli_target_make(cli_tree *tree) {
-    const cli_vessel_options *o = &tree->options->vessel;
+    const cli_target_option *aim = tree->aim;
     double ball[4];
-    if (o->path)
-        return path_target(tree, o->path);
-    if (!o->target)
+    if (!aim)
         return true;
-    if (!cli_numbers(o->target, ball, 4))
-        return file_target(tree, o->target);
+    if (aim->path)
+        return path_target(tree, aim->text);
+    if (!cli_numbers(aim->text, ball, 4))
+        return file_target(tree, aim->text);
     return ball[3] >= 0 ? point_target(tree, ball, 1, ball[3])
-                        : cli_fail("--target: '%s' has a radius below 0", o->target);
+                        : cli_fail("--target: '%s' has a radius below 0", aim->text);
 }
 
 /* ---- shapes from files: sampled signed distances ----------------------------------------- */
 
 /* What is sampled: a mesh, or another tree. */
 typedef struct sampling {
+    cli_carving *carving; /* where the samples go */
     sdv_shape shape;
     float *samples;
     const sdv_target *target;
@@ -242,14 +251,14 @@ static void sample_tree(void *user, uint32_t z) {
 
 /* Appends the samples of a shape to those of all. */
 static bool add_field(cli_tree *tree, sampling *s, void (*fn)(void *user, uint32_t z)) {
-    sdv_shapes *all = &tree->carving.shapes;
+    sdv_shapes *all = &s->carving->shapes;
     const float *b = &s->shape.b.x;
     double count = (double)b[0] * (double)b[1] * (double)b[2];
     size_t room = all->field_count + (size_t)count;
-    float *grown = realloc(tree->carving.fields, room * sizeof *grown);
+    float *grown = realloc(s->carving->fields, room * sizeof *grown);
     if (!grown)
         return cli_fail("out of memory");
-    tree->carving.fields = grown;
+    s->carving->fields = grown;
     s->samples = grown + all->field_count;
     s->shape.b.w = (float)all->field_count;
     tree->host.job.run(tree->host.job.user, (uint32_t)b[2], fn, s);
@@ -306,14 +315,16 @@ static bool tree_field(cli_tree *tree, const char *path, const io_tree *read, sa
     return ok;
 }
 
-static bool file_shape(cli_tree *tree, const char *path, sdv_shape *shape) {
+static bool file_shape(cli_tree *tree, cli_carving *carving, const char *path, unsigned kinds,
+                       sdv_shape *shape) {
     cli_source source = *tree->source;
     io_contents contents;
     sampling s;
     source.path = path;
     memset(&s, 0, sizeof s);
     memset(&contents, 0, sizeof contents);
-    if (!cli_read(&source, IO_MESH | IO_TREE, &contents))
+    s.carving = carving;
+    if (!cli_read(&source, kinds, &contents))
         return false;
     tree->progress = (cli_progress){"measuring", path, -1};
     bool ok = contents.kinds & IO_TREE ? tree_field(tree, path, &contents.tree, &s)
@@ -328,7 +339,7 @@ static bool file_shape(cli_tree *tree, const char *path, sdv_shape *shape) {
 
 static bool wrong_shape(const char *text) {
     return cli_fail("%s: is no shape; write sphere:X,Y,Z,R, box:X,Y,Z,X,Y,Z (two corners), "
-                    "plane:NX,NY,NZ,D or a FILE",
+                    "plane:NX,NY,NZ,D, ellipsoid:X,Y,Z,A,B,C (half axes), tree or a FILE",
                     text);
 }
 
@@ -351,6 +362,16 @@ static bool parse_shape(cli_tree *tree, const char *text, sdv_shape *shape) {
             a[k] = (float)(0.5 * (v[k] + v[k + 3]) - o[k]);
             b[k] = (float)(0.5 * fabs(v[k + 3] - v[k]));
         }
+    } else if (strncmp(text, "ellipsoid:", 10) == 0) {
+        if (!cli_numbers(text + 10, v, 6) || !(v[3] > 0 && v[4] > 0 && v[5] > 0))
+            return wrong_shape(text);
+        shape->kind = SDV_SHAPE_ELLIPSOID;
+        for (int k = 0; k < 3; k++) {
+            (&shape->a.x)[k] = (float)(v[k] - o[k]);
+            (&shape->b.x)[k] = (float)v[k + 3];
+        }
+    } else if (strcmp(text, "tree") == 0) {
+        shape->kind = SDV_SHAPE_TREE;
     } else if (strncmp(text, "plane:", 6) == 0) {
         if (!cli_numbers(text + 6, v, 4))
             return wrong_shape(text);
@@ -362,7 +383,7 @@ static bool parse_shape(cli_tree *tree, const char *text, sdv_shape *shape) {
         shape->a = lao_v4_make((float)(v[0] / size), (float)(v[1] / size), (float)(v[2] / size),
                                (float)offset);
     } else {
-        return file_shape(tree, text, shape);
+        return file_shape(tree, &tree->carving, text, IO_MESH | IO_TREE, shape);
     }
     return true;
 }
@@ -375,8 +396,104 @@ bool cli_carving_make(cli_tree *tree) {
         if (!parse_shape(tree, o->shapes[i].text, shape))
             return false;
         shape->operation = (lao_int)o->shapes[i].operation;
+        if (shape->kind == SDV_SHAPE_TREE && shape->operation == SDV_SUBTRACTION)
+            return cli_fail("--subtract: tree is what the shapes are combined with; it is added "
+                            "again by --union tree");
     }
     shapes->shapes = tree->carving.list;
     shapes->count = o->shape_count;
     return true;
+}
+
+/* ---- paths and targets to be seen ------------------------------------------------------- */
+
+enum { MARKER_CELLS = 48 };
+
+/* A tree along the points, in the tree's own millimetres. */
+static bool marker_tree(cli_tree *tree, const double *points, uint32_t count, float radius) {
+    sdv_tree_desc desc;
+    float *positions = cli_new(count, 3 * sizeof *positions),
+          *radii = cli_new(count, sizeof *radii);
+    sdv_segment *segments = cli_new(count, sizeof *segments);
+    bool ok = positions && radii && segments;
+    for (uint32_t i = 0; ok && i < count; i++) {
+        for (uint32_t k = 0; k < 3; k++)
+            positions[3 * i + k] = (float)(points[3 * i + k] - tree->vessel.origin[k]);
+        radii[i] = radius;
+        segments[i] = (sdv_segment){i, i + 1};
+    }
+    memset(&desc, 0, sizeof desc);
+    desc.node_count = count;
+    desc.positions = positions;
+    desc.radii = radii;
+    desc.segment_count = count - 1;
+    desc.segments = segments;
+    ok = ok && sdv_tree_build(&tree->host, &desc, &tree->marker.tree) == LAO_OK;
+    free(positions);
+    free(radii);
+    free(segments);
+    return ok;
+}
+
+/* A mesh is added to a point that is inside the box of its samples. */
+static bool marker_mesh(cli_tree *tree, const char *path) {
+    cli_carving *carving = &tree->marker.carving;
+    sdv_shape *shape = &carving->list[0];
+    if (!file_shape(tree, carving, path, IO_MESH, shape))
+        return false;
+    shape->operation = SDV_UNION;
+    carving->shapes.shapes = carving->list;
+    carving->shapes.count = 1;
+    double point[3];
+    const float *low = &shape->a.x;
+    for (int k = 0; k < 3; k++)
+        point[k] = (double)low[k] + tree->vessel.origin[k];
+    return marker_tree(tree, point, 1, 0);
+}
+
+static bool marker_body(cli_tree *tree, float thin) {
+    const char *text = tree->aim->text;
+    double ball[4];
+    uint32_t count;
+    if (tree->aim->path) {
+        double *points = read_path(text, &count);
+        bool ok = points && marker_tree(tree, points, count, thin);
+        free(points);
+        return ok;
+    }
+    if (!cli_numbers(text, ball, 4))
+        return marker_mesh(tree, text);
+    return marker_tree(tree, ball, 1, ball[3] > 0 ? (float)ball[3] : 2 * thin);
+}
+
+/* Green like L19's paths; a target is ochre. */
+bool cli_marker_make(cli_tree *tree) {
+    static const uint8_t tones[2][4] = {{214, 170, 96, 255}, {44, 150, 74, 255}};
+    cli_marker *m = &tree->marker;
+    const uint8_t *tone = tones[tree->aim->path];
+    const float rgb[3] = {(float)tone[0] / 255, (float)tone[1] / 255, (float)tone[2] / 255};
+    sdv_grid_desc desc;
+    float extent = 0;
+    for (int k = 0; k < 3; k++)
+        extent = fmaxf(extent, (float)tree->grid.size[k] * tree->grid.cell);
+    memset(&desc, 0, sizeof desc);
+    desc.resolution = MARKER_CELLS;
+    if (!marker_body(tree, 0.006f * extent) ||
+        sdv_grid_build(&tree->host, &m->tree, &desc, &m->grid) != LAO_OK)
+        return false;
+    m->colors = cli_new(m->grid.cone_count, 8);
+    for (uint32_t i = 0; m->colors && i < 8 * m->grid.cone_count; i++)
+        m->colors[i] = tone[i % 4];
+    return m->colors && sdv_object_make(&tree->host, &m->grid, m->colors, &m->object) == LAO_OK &&
+           (!m->carving.shapes.count ||
+            sdv_object_shapes(&tree->host, &m->carving.shapes, rgb, &m->object) == LAO_OK);
+}
+
+void cli_marker_free(cli_marker *marker) {
+    sdv_object_free(&marker->object);
+    free(marker->colors);
+    sdv_grid_free(&marker->grid);
+    sdv_tree_free(&marker->tree);
+    free(marker->carving.fields);
+    memset(marker, 0, sizeof *marker);
 }

@@ -12,8 +12,10 @@ int cli_text_add(void *user, const char *text, size_t length) {
         size_t room = 2 * (t->length + length + 1);
         char *grown = realloc(t->text, room);
         t->broken = !grown && !cli_fail("out of memory");
-        t->text = grown ? grown : t->text;
-        t->room = grown ? room : t->room;
+        if (grown) {
+            t->text = grown;
+            t->room = room;
+        }
     }
     if (t->broken)
         return 1;

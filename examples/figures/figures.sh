@@ -6,7 +6,7 @@
 #
 # The figures stand in the tables beside this script, whose columns are separated by '|':
 #   figure NAME | size of a panel | pictures in a row (0: one for each column) | title | note
-#   row    ARGUMENTS | caption     what is drawn: @CAMERAS and @DATA stand for folders; rows with @DATA want LINEAO_DATA
+#   row    ARGUMENTS | caption     what is drawn: @CAMERAS, @TREES and @DATA stand for folders; rows and columns with @DATA want LINEAO_DATA
 #   column ARGUMENTS | caption     how it is drawn
 # A panel is `lineao ROW COLUMN`, its command `render` unless the row begins with another one.
 set -eu
@@ -40,7 +40,7 @@ absent() {
 }
 
 arguments() {
-    printf '%s' "$1" | sed "s|@DATA|${LINEAO_DATA-}|g; s|@CAMERAS|$here/cameras|g"
+    printf '%s' "$1" | sed "s|@DATA|${LINEAO_DATA-}|g; s|@CAMERAS|$here/cameras|g; s|@TREES|$here/trees|g"
 }
 
 # What was collected of one figure becomes a sheet: files rows and columns hold "ARGUMENTS|caption" lines.

@@ -128,6 +128,77 @@ bool backdrop_outline(const float *coverage, uint32_t width, uint32_t height, do
     return ok;
 }
 
+/* ---- meshes ----------------------------------------------------------------------------- */
+
+enum { CORNERS = 4 }; /* of a triangle that a plane has cut */
+
+/* Clip coordinates of a vertex: x, y, depth, w. */
+static void clip_of(const backdrop_mesh *mesh, uint32_t vertex, double clip[4]) {
+    const float *p = mesh->positions + 3 * (size_t)vertex;
+    for (int k = 0; k < 4; k++) {
+        const double *m = mesh->to_clip + k;
+        clip[k] = m[0] * (double)p[0] + m[4] * (double)p[1] + m[8] * (double)p[2] + m[12];
+    }
+}
+
+/* The part of a triangle behind the near plane, in pixels. Returns how many corners it has. */
+static int cut(double corners[3][4], uint32_t width, uint32_t height, double out[CORNERS][2]) {
+    int count = 0;
+    for (int i = 0; i < 3; i++) {
+        const double *a = corners[i], *b = corners[(i + 1) % 3];
+        double ends[2] = {0, a[2] / (a[2] - b[2])}; /* a itself, and where the edge is cut */
+        for (int k = 0; k < 2; k++) {
+            if (k == 0 ? !(a[2] > 0) : (a[2] > 0) == (b[2] > 0))
+                continue;
+            double c[4];
+            for (int j = 0; j < 4; j++)
+                c[j] = a[j] + ends[k] * (b[j] - a[j]);
+            out[count][0] = (0.5 + 0.5 * c[0] / c[3]) * width;
+            out[count++][1] = (0.5 - 0.5 * c[1] / c[3]) * height;
+        }
+    }
+    return count;
+}
+
+/* Where the polygon's border crosses a row: least and greatest x. */
+static void cross(double corners[CORNERS][2], int count, double y, double range[2]) {
+    range[0] = INFINITY;
+    range[1] = -INFINITY;
+    for (int i = 0; i < count; i++) {
+        const double *a = corners[i], *b = corners[(i + 1) % count];
+        if ((a[1] <= y) == (b[1] <= y))
+            continue;
+        double x = a[0] + (y - a[1]) / (b[1] - a[1]) * (b[0] - a[0]);
+        range[0] = fmin(range[0], x);
+        range[1] = fmax(range[1], x);
+    }
+}
+
+/* The first pixel whose centre is at or behind x, from 0 to count. */
+static uint32_t first_pixel(double x, uint32_t count) {
+    double pixel = ceil(x - 0.5);
+    return pixel > 0 ? pixel < count ? (uint32_t)pixel : count : 0; /* NaN: 0 */
+}
+
+void backdrop_cover(const backdrop_mesh *mesh, uint32_t width, uint32_t height, float value,
+                    float *image) {
+    for (uint32_t t = 0; t < mesh->triangle_count; t++) {
+        double clip[3][4], corners[CORNERS][2], low = INFINITY, high = -INFINITY, range[2];
+        for (int k = 0; k < 3; k++)
+            clip_of(mesh, mesh->triangles[3 * (size_t)t + (size_t)k], clip[k]);
+        int count = cut(clip, width, height, corners);
+        for (int i = 0; i < count; i++) {
+            low = fmin(low, corners[i][1]);
+            high = fmax(high, corners[i][1]);
+        }
+        for (uint32_t y = first_pixel(low, height); y < first_pixel(high, height); y++) {
+            cross(corners, count, y + 0.5, range);
+            for (uint32_t x = first_pixel(range[0], width); x < first_pixel(range[1], width); x++)
+                image[(size_t)y * width + x] = fmaxf(image[(size_t)y * width + x], value);
+        }
+    }
+}
+
 /* ---- composition ------------------------------------------------------------------------ */
 
 bool backdrop_compose(picture *lines, const float *intensity, const float *coverage,

@@ -29,6 +29,19 @@ bool backdrop_layer(const float *intensity, uint32_t width, uint32_t height,
 bool backdrop_outline(const float *coverage, uint32_t width, uint32_t height, double line_width,
                       float *opacity);
 
+/* A triangle mesh to be projected: clip = to_clip * (position, 1), column-major, depth from 0 at
+ * the near plane to w at the far one, y up. */
+typedef struct backdrop_mesh {
+    uint32_t triangle_count;
+    const float *positions;    /* 3 per vertex */
+    const uint32_t *triangles; /* 3 vertices each */
+    double to_clip[16];
+} backdrop_mesh;
+/* Raises to `value` what is less in pixels whose centre a triangle covers; what lies before the
+ * near plane is cut off. image: width * height floats. */
+void backdrop_cover(const backdrop_mesh *mesh, uint32_t width, uint32_t height, float value,
+                    float *image);
+
 /* Lays the lines over the backdrop and draws the outline on top: `lines` is a picture with a
  * transparent background and becomes the whole. intensity or coverage may be NULL: no backdrop, no
  * outline. False: out of memory, *lines is then untouched. */

@@ -6,11 +6,10 @@
 bool picture_make(uint32_t width, uint32_t height, picture *out) {
     if (width == 0 || height == 0 || width > SIZE_MAX / 4 / height)
         return false;
-    uint8_t *pixels = calloc((size_t)width * height, 4);
-    if (!pixels)
-        return false;
-    *out = (picture){width, height, pixels};
-    return true;
+    out->width = width;
+    out->height = height;
+    out->pixels = calloc((size_t)width * height, 4);
+    return out->pixels != NULL;
 }
 
 void picture_free(picture *p) {

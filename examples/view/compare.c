@@ -80,8 +80,19 @@ static bool open_session(side *s, const wish *w) {
     return ok;
 }
 
+/* Those that the panel edits: of the last set that has any; the mark of a target has its own. */
+static const void *shared_settings(const cli_scene *scene) {
+    const void *found = NULL;
+    for (uint32_t i = 0; i < scene->count; i++) {
+        if (scene->sets[i].module_settings[0])
+            found = scene->sets[i].module_settings[0];
+    }
+    return found;
+}
+
 static void take_settings(side *s, const wish *w) {
-    uint32_t count = s->compare->doc->scene->count;
+    const cli_scene *scene = s->compare->doc->scene;
+    uint32_t count = scene->count;
     memcpy(s->settings, w->sets, count * sizeof *s->settings);
     memcpy(s->module, w->module, sizeof s->module);
     s->modules[0] = s->module;
@@ -91,7 +102,8 @@ static void take_settings(side *s, const wish *w) {
             s->settings[i].set |= LAO_SET(preset);
         }
         s->session.sets[i].settings = &s->settings[i];
-        if (s->compare->doc->scene->module)
+        if (scene->module && scene->sets[i].module_settings[0] &&
+            scene->sets[i].module_settings[0] == shared_settings(scene))
             s->session.sets[i].module_settings = s->modules;
     }
 }
@@ -123,9 +135,12 @@ static uint8_t *paint(const float *values, const lao_read_info *info) {
 static bool read_image(side *s, const wish *w, compare_result *out) {
     lao_read_info info, raw;
     if (strcmp(w->image, "out") == 0) {
-        out->pixels = cli_session_picture(&s->session);
-        info.width = w->shot.width;
-        info.height = w->shot.height;
+        picture p = {0, 0, NULL};
+        if (!cli_session_picture(&s->session, &p))
+            return false;
+        out->pixels = p.pixels;
+        info.width = p.width;
+        info.height = p.height;
         info.channels = 4;
     } else {
         float *values = cli_session_image(&s->session, w->image, w->level, &info);
@@ -257,8 +272,8 @@ void compare_ask(compare *c, const cli_shot *shot, const compare_look looks[2], 
         strncpy(w->image, image, sizeof w->image - 1);
         for (uint32_t s = 0; s < scene->count; s++)
             w->sets[s] = scene->sets[s].settings;
-        if (scene->module)
-            memcpy(w->module, scene->sets[0].module_settings[0],
+        if (scene->module && shared_settings(scene))
+            memcpy(w->module, shared_settings(scene),
                    sizeof(uint64_t) + scene->module->setting_count * sizeof(float));
     }
     pthread_cond_broadcast(&c->wake);

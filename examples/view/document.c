@@ -2,6 +2,7 @@
 
 #include "flow.h"
 #include "io_read.h"
+#include "legends.h"
 #include "report.h"
 
 #include <math.h>
@@ -165,9 +166,10 @@ static bool list_settings(document *doc) {
         ok = ok && add_settings(doc, sdv_module(), "Vessels", &doc->tree.settings, 0);
     if (doc->command == CLI_SURFACE)
         ok = ok && add_settings(doc, vsf_module(), "Surface", &doc->wall.settings, 0);
-    bool one = doc->command != CLI_RENDER || scene->count == 1;
-    for (uint32_t i = scene->count > 1 && one ? 1 : 0; ok && i < scene->count; i++)
-        ok = add_settings(doc, lao_lines_module(), one ? "Lines" : file_name(scene->sets[i].name),
+    bool many = doc->command == CLI_RENDER && scene->count > 1;
+    uint32_t last = doc->command == CLI_VESSEL ? scene->count - 1 : doc->wall.lit ? 1 : 0;
+    for (uint32_t i = many ? 0 : last; ok && i < (many ? scene->count : last + 1); i++)
+        ok = add_settings(doc, lao_lines_module(), many ? file_name(scene->sets[i].name) : "Lines",
                           &scene->sets[i].settings, i);
     return ok;
 }
@@ -264,16 +266,32 @@ static bool load(document *doc) {
     }
     if (doc->command == CLI_VESSEL) {
         doc->scene = &doc->tree.scene;
-        return cli_tree_load(&doc->options, &doc->tree) && cli_tree_prepare(&doc->tree);
+        return cli_tree_load(&doc->options, 0, &doc->tree) && cli_tree_prepare(&doc->tree);
     }
     doc->scene = &doc->wall.scene;
     if (!cli_wall_load(&doc->options, &doc->wall))
         return false;
-    if (doc->scene->count > 1) { /* both are one source's, but for what the surface has not */
+    if (doc->wall.lit) { /* both are one source's, but for what the surface has not */
         doc->scene->sets[0].settings = doc->scene->sets[1].settings;
         doc->scene->sets[0].settings.occlusion = 0;
         doc->scene->sets[0].settings.set |= LAO_SET(occlusion);
     }
+    return true;
+}
+
+/* What depends on camera and time. */
+static bool aim(document *doc) {
+    cli_wall *wall = &doc->wall;
+    lao_object_desc all;
+    if (doc->command == CLI_VESSEL)
+        cli_tree_fit_period(&doc->tree, &doc->shot);
+    if (doc->command != CLI_SURFACE)
+        return true;
+    if (wall->lit && isnan(doc->options.time) && !doc->options.surface.lines)
+        doc->shot.time = wall->source->path ? (float)wall->near.beta / 4 : EMBEDDED_TIME;
+    if (!cli_wall_aim(wall, &doc->shot))
+        return false;
+    cli_wall_time(wall, (double)doc->shot.time, &all); /* all goes up with the object */
     return true;
 }
 
@@ -303,15 +321,17 @@ document *document_open(const char *const *words, uint32_t count) {
         return NULL;
     memset(doc, 0, sizeof *doc);
     bool ok = take_words(doc, words, count) && parse(doc) && load(doc) &&
-              cli_shot_make(&doc->options, doc->scene, &doc->shot) && list_settings(doc);
+              cli_shot_make(&doc->options, doc->scene, &doc->shot) && aim(doc) &&
+              list_settings(doc);
     if (!ok) {
         document_close(doc);
         return NULL;
     }
     for (uint32_t i = 0; i < doc->scene->count; i++)
         doc->timed = doc->timed || doc->scene->sets[i].times;
-    if (doc->wall.lit && isnan(doc->options.time) && !doc->options.surface.lines)
-        doc->shot.time = EMBEDDED_TIME;
+    if (doc->command == CLI_VESSEL) /* as the first camera has it, from now on */
+        doc->settings[0].edited |=
+            doc->tree.settings.set & SDV_SET(ssp_period) & ~doc->tree.source->vessel.set;
     warn(doc);
     return doc;
 }
@@ -338,14 +358,25 @@ const char *document_name(const document *doc) {
     return file_name(doc->scene->sets[0].name);
 }
 
+bool document_surround(void *user, picture *p) {
+    document *doc = user;
+    const char *side = doc->options.legend;
+    if (doc->command == CLI_RENDER)
+        return cli_legends_draw(&doc->options, doc->scene, NULL, 0, p);
+    if (doc->command == CLI_SURFACE)
+        return cli_wall_legends(&doc->wall, p);
+    return !side || strcmp(side, "off") == 0 || cli_tree_legend(&doc->tree, side, p);
+}
+
 /* ---- command lines ----------------------------------------------------------------------- */
 
 /* Flags of the words that the viewer says itself: how many words each takes. */
 static int words_dropped(const char *word) {
     static const char *const names[] = {"--camera", "--size",        "--time",    "--view",
                                         "--out",    "--save-camera", "--dump",    "--timings",
-                                        "--frames", "--fps",         "--backend", "-o"};
-    if (strcmp(word, "--ortho") == 0)
+                                        "--frames", "--fps",         "--backend", "--outline",
+                                        "-o"};
+    if (strcmp(word, "--ortho") == 0 || strcmp(word, "--backdrop") == 0)
         return 1;
     for (size_t i = 0; i < sizeof names / sizeof *names; i++) {
         size_t length = strlen(names[i]);

@@ -54,6 +54,9 @@ bool document_reloads(const document *doc, uint32_t index, int setting);
 void document_show_time(document *doc, bool shown);
 bool document_shows_time(const document *doc);
 
+/* A cli_picture_edit of a document: the legends that its words ask for. */
+bool document_surround(void *user, picture *p);
+
 /* "lineao render a.trk --set ... --camera '...' --size WxH -o picture.png", for a shell; the words
  * alone for `words` (not quoted, one a line). For free(). NULL: reported. */
 char *document_command(const document *doc, const cli_shot *shot, const char *out);

@@ -68,11 +68,6 @@ bool stage_open(view *v, document *doc) {
     v->doc = doc;
     v->shot = v->fitted = doc->shot;
     find_bounds(v);
-    if (doc->command == CLI_SURFACE) {
-        lao_object_desc all;
-        cli_wall_aim(&doc->wall, &v->shot);
-        cli_wall_time(&doc->wall, (double)v->shot.time, &all); /* all goes up with the object */
-    }
     v->dirty = true;
     v->unfitted = !doc->options.camera;
     double first, length;
@@ -391,9 +386,10 @@ bool stage_save(view *v, const char *path, uint32_t width, uint32_t height) {
     cli_shot_aim(v->doc->scene, &shot);
     v->window.backend->wait(&v->window);
     memset(&session.view, 0, sizeof session.view);
-    bool ok = lao_view_create(session.context, &size, &session.view) == LAO_OK &&
-              cli_session_render(&session, &shot, 0) &&
-              cli_write_picture(path, NULL, &session, &shot);
+    bool ok =
+        lao_view_create(session.context, &size, &session.view) == LAO_OK &&
+        cli_session_render(&session, &shot, 0) &&
+        cli_write_picture(path, NULL, &session, shot.background[3] >= 1, document_surround, v->doc);
     if (session.view.id)
         lao_view_destroy(session.context, session.view);
     trace(v, "%s %s", ok ? "saved" : "unsaved", path);

@@ -351,6 +351,13 @@ static void test_flags_of_files(void **state) {
     assert_false(same_pictures("f0.png", "f4.png"));
     expect_ok(
         RUN("render --size 48x32 --occlusion off a.vtp --ssaa 3 b.vtp --backend vk -o f5.png"));
+    write_lines("c.vtp", 0.5f, -1); /* behind those of a.vtp */
+    size = "--size 96x64 --ssaa 1 --samples 20 --width 0.5 --halo none";
+    expect_ok(RUN("render %s a.vtp c.vtp -o f0.png", size));
+    expect_ok(RUN("render %s a.vtp c.vtp --shared-occlusion -o f1.png", size));
+    expect_ok(RUN("render %s a.vtp c.vtp --shared-occlusion --backend vk -o f2.png", size));
+    assert_false(same_pictures("f0.png", "f1.png"));
+    assert_true(same_pictures("f1.png", "f2.png"));
 }
 
 /* Far from zero too. */

@@ -52,8 +52,9 @@ static void write_tube(const char *path, int inward, double scale) {
     assert_int_equal(fclose(file), 0);
 }
 
-/* A line along the axis at y = shift + 1, 0 ms at its start, 1000 ms at its end; a VTK file. */
-static void write_lines(const char *path, int with_times) {
+/* A line along the axis at y = shift + 1, 0 ms at its start, 1000 ms at its end, as times or as
+   speed (m/s) or (NULL) not told; a VTK file. */
+static void write_lines(const char *path, const char *array) {
     FILE *file = fopen(path, "w");
     assert_non_null(file);
     fprintf(file, "# vtk DataFile Version 3.0\nx\nASCII\nDATASET POLYDATA\nPOINTS 61 float\n");
@@ -63,10 +64,10 @@ static void write_lines(const char *path, int with_times) {
     fprintf(file, "LINES 1 62\n61");
     for (int i = 0; i <= 60; i++)
         fprintf(file, " %d", i);
-    if (with_times) {
-        fprintf(file, "\nPOINT_DATA 61\nSCALARS time float 1\nLOOKUP_TABLE default\n");
+    if (array) {
+        fprintf(file, "\nPOINT_DATA 61\nSCALARS %s float 1\nLOOKUP_TABLE default\n", array);
         for (int i = 0; i <= 60; i++)
-            fprintf(file, "%.6f\n", 1000.0 * i / 60);
+            fprintf(file, "%.6f\n", strcmp(array, "time") == 0 ? 1000.0 * i / 60 : length / 1000);
     }
     fprintf(file, "\n");
     assert_int_equal(fclose(file), 0);
@@ -206,12 +207,11 @@ static void vertices_of_a_tube(void **state) {
 
 /* phi is the distance to the lit part of the line at the time; gamma the 1 % quantile over all
    steps; near = 1 - phi / gamma. */
-static void distances_of_a_tube(void **state) {
-    (void)state;
-    write_tube("tube.obj", 0, 1);
-    write_lines("line.vtk", 1);
-    expect_ok(RUN("surface tube.obj --lines line.vtk --time 300 --set near_steps=11 "
-                  "--vertices v.json"));
+/* slack: of beta, by how lines are written. */
+static void distances_by(const char *lines, double slack) {
+    expect_ok(RUN("surface tube.obj --lines %s --time 300 --set near_steps=11 "
+                  "--vertices v.json",
+                  lines));
     cJSON *json = read_json("v.json");
     int n, count;
     double *p = numbers(json, "p", 3, &n), *phi = numbers(json, "phi", 1, &count);
@@ -219,8 +219,8 @@ static void distances_of_a_tube(void **state) {
     double beta = cJSON_GetObjectItem(json, "beta")->valuedouble;
     double gamma = cJSON_GetObjectItem(json, "gamma")->valuedouble;
     double reach = sqrt(beta * log(4)), some = 0;
-    assert_true(fabs(beta - 2000) < 1e-6); /* twice the median of the last times */
-    for (int i = 0; i < n; i++) {          /* 300 ms is one of the 11 steps */
+    assert_true(fabs(beta - 2000) < slack); /* twice the median of the last times */
+    for (int i = 0; i < n; i++) {           /* 300 ms is one of the 11 steps */
         double z = p[3 * i + 2] - shift[2] + length / 2;
         double low = (300 - reach) / 1000 * length, high = (300 + reach) / 1000 * length;
         double along = z < low ? low - z : z > high ? z - high : 0;
@@ -236,6 +236,15 @@ static void distances_of_a_tube(void **state) {
     free(phi);
     free(near);
     cJSON_Delete(json);
+}
+
+static void distances_of_a_tube(void **state) {
+    (void)state;
+    write_tube("tube.obj", 0, 1);
+    write_lines("line.vtk", "time");
+    write_lines("steady.vtk", "speed");
+    distances_by("line.vtk", 1e-6);
+    distances_by("steady.vtk", 1e-3);
     expect_fault(RUN("surface tube.obj --lines line.vtk --set near_steps=0 -o x.png"), 2,
                  "near_steps");
 }
@@ -256,7 +265,7 @@ static void dump_of_a_tube(void **state) {
     image_exr exr[2];
     (void)state;
     write_tube("tube.obj", 0, 1);
-    write_lines("line.vtk", 1);
+    write_lines("line.vtk", "time");
     write_camera("camera.json", 0);
     for (int b = 0; b < 2; b++) {
         expect_ok(RUN("surface tube.obj --lines line.vtk --time 300 --camera camera.json " SMALL
@@ -297,7 +306,7 @@ static void dump_of_a_tube(void **state) {
 static void uses(void **state) {
     (void)state;
     write_tube("cm.obj", 1, 0.1);
-    write_lines("line.vtk", 1);
+    write_lines("line.vtk", "time");
     program_run run = RUN("surface cm.obj --unit cm --vertices v.json --json");
     assert_int_equal(run.code, 0);
     assert_string_equal(run.err, "");
@@ -316,18 +325,179 @@ static void uses(void **state) {
     expect_ok(RUN("surface --scene aneurysm " SMALL "-o a.png --save-camera c.json"));
     expect_ok(RUN("surface --scene aneurysm --camera c.json " SMALL "-o b.png --backend vk"));
     assert_true(same_files("a.png", "b.png"));
-    expect_ok(RUN("surface --scene aneurysm --baseline transparent " SMALL "-o t.png"));
-    expect_ok(RUN("surface --scene aneurysm --focus 20,30 --depth-shadow on --attenuation on " SMALL
+    expect_ok(RUN("surface cm.obj --unit cm --baseline transparent " SMALL "-o t.png"));
+    expect_ok(RUN("surface cm.obj --unit cm --focus 20,30 --depth-shadow on --attenuation on " SMALL
                   "-o e.png --timings t.json"));
     char *a = read_text("t.json");
     assert_non_null(strstr(a, "\"focus_y\""));
     free(a);
 }
 
+/* ---- trees and volumes ------------------------------------------------------------------ */
+
+/* A capsule from (0,0,0) to (0,0,20) mm of radius 2, and a twig of radius `twig`. */
+static void write_tree(const char *path, double twig) {
+    FILE *file = fopen(path, "w");
+    assert_non_null(file);
+    fprintf(file, "1 3 50 60 70 2 -1\n2 3 50 60 90 2 1\n");
+    if (twig > 0)
+        fprintf(file, "3 3 65 60 90 %g 2\n", twig);
+    assert_int_equal(fclose(file), 0);
+}
+
+static double number_of(const cJSON *json, const char *key) {
+    const cJSON *item = cJSON_GetObjectItem(json, key);
+    assert_true(cJSON_IsNumber(item));
+    return item->valuedouble;
+}
+
+/* The wall of a tree is a closed mesh on the tree's round cones; a twig that no voxel could hold is
+   made wide enough, and that is said. */
+static void tree_as_mesh(void **state) {
+    (void)state;
+    write_tree("tree.swc", 0);
+    program_run run = RUN("surface tree.swc --unit mm --json --vertices v.json");
+    assert_int_equal(run.code, 0);
+    cJSON *report = cJSON_Parse(run.out), *json = read_json("v.json");
+    const double pi = 3.141592653589793;
+    double area = 2 * pi * 2 * 20 + 4 * pi * 4, volume = pi * 4 * 20 + 4 * pi * 8 / 3;
+    assert_true(number_of(report, "open_edges") == 0 && number_of(report, "parts") == 1);
+    assert_true(fabs(number_of(report, "area") - area) < 0.01 * area);
+    assert_true(fabs(number_of(report, "volume") - volume) < 0.01 * volume);
+    int n, m;
+    double *p = numbers(json, "p", 3, &n), *normal = numbers(json, "n", 3, &m);
+    for (int i = 0; i < n; i++) {
+        double z = fmin(fmax(p[3 * i + 2] - 70, 0), 20) + 70, d[3], r = 0, along = 0;
+        for (int k = 0; k < 3; k++) {
+            d[k] = p[3 * i + k] - (k == 0 ? 50 : k == 1 ? 60 : z);
+            r += d[k] * d[k];
+            along += d[k] * normal[3 * i + k];
+        }
+        assert_true(fabs(sqrt(r) - 2) < 0.01 && along > 0.99 * sqrt(r));
+    }
+    free(p);
+    free(normal);
+    cJSON_Delete(json);
+    cJSON_Delete(report);
+    program_free(&run);
+    write_tree("twig.swc", 0.001);
+    run = RUN("surface twig.swc --unit mm --grid 64 --json");
+    assert_int_equal(run.code, 0);
+    assert_non_null(strstr(run.out, "--grid makes it less"));
+    report = cJSON_Parse(run.out);
+    assert_true(number_of(report, "parts") == 1 && number_of(report, "open_edges") == 0);
+    cJSON_Delete(report);
+    program_free(&run);
+    expect_fault(RUN("surface tree.swc --value wss -o x.png"), 1, "is a tree");
+    expect_fault(RUN("surface tree.swc --grid 8 -o x.png"), 2, "--grid");
+    expect_fault(RUN("surface tree.swc --seeds 10 -o x.png"), 2, "--seeds");
+}
+
+/* Blood that flows along x through a square duct of 10 x 10 voxels of 1 mm. */
+static void write_volume(const char *path) {
+    FILE *file = fopen(path, "w");
+    assert_non_null(file);
+    fprintf(file, "# vtk DataFile Version 3.0\nx\nASCII\nDATASET STRUCTURED_POINTS\n"
+                  "DIMENSIONS 24 16 16\nORIGIN 0 0 0\nSPACING 1 1 1\nPOINT_DATA 6144\n"
+                  "VECTORS velocity float\n");
+    for (int i = 0; i < 6144; i++) {
+        int y = i / 24 % 16, z = i / 384;
+        bool in = y >= 3 && y < 13 && z >= 3 && z < 13;
+        fprintf(file, "%s\n", in ? "0.5 0 0" : "0 0 0");
+    }
+    assert_int_equal(fclose(file), 0);
+}
+
+/* A volume gives its wall and its flow: the mesh around where the blood is, and lines in it, which
+   in steady flow start at 0. */
+static void volume_as_mesh(void **state) {
+    (void)state;
+    write_volume("duct.vtk");
+    program_run run = RUN("surface duct.vtk --seeds 50 --smooth 5 --json --vertices v.json");
+    assert_int_equal(run.code, 0);
+    cJSON *report = cJSON_Parse(run.out), *json = read_json("v.json");
+    double volume = number_of(report, "volume"), beta = number_of(report, "beta");
+    int n, m;
+    double *p = numbers(json, "p", 3, &n), *phi = numbers(json, "phi", 1, &m);
+    assert_true(fabs(volume - 2400) < 0.1 * 2400);
+    assert_true(number_of(report, "open_edges") == 0);
+    assert_true(beta > 10 && beta <= 2 * 48); /* lines of 24 mm at most, 0.5 mm / ms */
+    for (int i = 0; i < n; i++) {
+        assert_true(p[3 * i] > -1.5 && p[3 * i] < 24.5);
+        assert_true(p[3 * i + 1] > 1.5 && p[3 * i + 1] < 13.5);
+        assert_true(phi[i] >= 0 && phi[i] < 24);
+    }
+    free(p);
+    free(phi);
+    cJSON_Delete(json);
+    cJSON_Delete(report);
+    program_free(&run);
+    expect_ok(RUN("surface duct.vtk --seeds 50 " SMALL "-o duct.png"));
+    expect_fault(RUN("surface duct.vtk --lines line.vtk -o x.png"), 2, "--lines");
+}
+
+/* ---- what is drawn on top ---------------------------------------------------------------- */
+
+/* Legends, a colour map for the wall and contours change the picture, alike on both backends. */
+static void looks(void **state) {
+    static const char *const flags[] = {"", "--legend right",
+                                        "--wall-colormap inferno --near-gamma 6", "--contours 0.2",
+                                        "--suggestive-contours 0.2 --suggestive-threshold 0"};
+    (void)state;
+    write_tube("tube.obj", 0, 1);
+    write_lines("line.vtk", "time");
+    write_camera("camera.json", 0);
+    for (int i = 0; i < 5; i++) {
+        for (int b = 0; b < 2; b++)
+            expect_ok(RUN("surface tube.obj --lines line.vtk --camera camera.json --time 300 "
+                          "--size 240x180 --ssaa 1 "
+                          "--backend %s -o %s%d.png %s",
+                          b ? "vk" : "gl", b ? "vk" : "gl", i, flags[i]));
+        char gl[32], vk[32];
+        snprintf(gl, sizeof gl, "gl%d.png", i);
+        snprintf(vk, sizeof vk, "vk%d.png", i);
+        assert_true(same_files(gl, vk));
+        if (i > 0 && i < 4) /* a straight tube has no suggestive contour */
+            assert_false(same_files("gl0.png", gl));
+    }
+    expect_fault(RUN("surface tube.obj --contours 0 -o x.png"), 2, "--contours");
+    expect_fault(RUN("surface tube.obj --wall-colormap rainbow -o x.png"), 2, "--wall-colormap");
+}
+
+/* lineao render --outline: a mesh's silhouette behind and around lines, which stay as they are. */
+static void outlines(void **state) {
+    char error[IMAGE_ERROR_SIZE];
+    uint32_t width, height;
+    (void)state;
+    write_tube("tube.obj", 0, 1);
+    write_lines("line.vtk", "time");
+    write_camera("camera.json", 1); /* 16 mm high: 7.5 pixels are a mm */
+    expect_ok(RUN("render line.vtk --width 1 --camera camera.json --size 160x120 -o plain.png"));
+    expect_ok(RUN("render line.vtk --width 1 --outline tube.obj --camera camera.json "
+                  "--size 160x120 -o outline.png"));
+    uint8_t *pixels[2];
+    for (int i = 0; i < 2; i++)
+        assert_true(
+            image_read_png(i ? "outline.png" : "plain.png", 4, &width, &height, &pixels[i], error));
+    uint32_t counts[3] = {0, 0, 0}; /* as before, tinted, ink */
+    for (uint32_t i = 0; i < width * height; i++) {
+        const uint8_t *a = pixels[0] + 4 * i, *b = pixels[1] + 4 * i;
+        counts[memcmp(a, b, 3) == 0 ? 0 : b[1] > 200 ? 1 : 2]++;
+    }
+    /* The tube's silhouette is 6 mm wide; along z it is seen at 25.6 degrees to the picture. */
+    double area = 6 * 12 * cos(0.4478) + 3.14159 * 9 * sin(0.4478), ring = 2 * (6 + 12);
+    assert_true(fabs(counts[1] + 0.5 * counts[2] - (area - 12 * 0.9) * 56.25) <
+                0.15 * 56.25 * area);
+    assert_true(counts[2] > 1.0 * ring * 7.5 && counts[2] < 2.5 * ring * 7.5);
+    free(pixels[0]);
+    free(pixels[1]);
+    expect_fault(RUN("render line.vtk --outline none.stl -o x.png"), 1, "none.stl");
+}
+
 static void faults(void **state) {
     (void)state;
     write_tube("tube.obj", 0, 1);
-    write_lines("plain.vtk", 0);
+    write_lines("plain.vtk", NULL);
     expect_fault(RUN("surface"), 2, "no output");
     expect_fault(RUN("surface none.stl -o x.png"), 1, "none.stl");
     expect_fault(RUN("surface tube.obj tube.obj -o x.png"), 2, "second MESH");
@@ -367,6 +537,10 @@ int main(int argc, char **argv) {
         cmocka_unit_test(distances_of_a_tube),
         cmocka_unit_test(dump_of_a_tube),
         cmocka_unit_test(uses),
+        cmocka_unit_test(tree_as_mesh),
+        cmocka_unit_test(volume_as_mesh),
+        cmocka_unit_test(looks),
+        cmocka_unit_test(outlines),
         cmocka_unit_test(faults),
     };
     program = argc > 1 ? argv[1] : "lineao";

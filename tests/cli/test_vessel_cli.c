@@ -1,7 +1,7 @@
 /* `lineao vessel` keeps its contract: trees, layouts, distances, cuts and cameras come out as files
  * whose numbers agree with each other and with the shapes that were asked for, on both backends
- * alike; nothing is drawn unless a picture, a dump or timings are asked for; wrong usage is one
- * line.
+ * alike; the layout stands beside the tree, and what is at risk is marked in both; nothing is drawn
+ * unless a picture, a dump or timings are asked for; wrong usage is one line.
  */
 #include "program.h"
 
@@ -90,6 +90,7 @@ static const double y_nodes[5][4] = {{0, 0, -1100, 2},
                                      {16, 24, -1096, 1}};
 static const int y_segments[4][2] = {{0, 1}, {1, 2}, {1, 3}, {3, 4}};
 #define Y "y.swc --unit mm --camera cam.json " SMALL
+#define BARE "--set parameterization=off " /* a dump's is on, and costs */
 
 /* Signed distance to one limb in double precision, by the least over its balls. */
 static double limb_distance(int limb, const double p[3]) {
@@ -182,7 +183,7 @@ static void test_cuts(void **state) {
     dump d;
     uint32_t cut = 0, left = 0;
     (void)state;
-    expect_ok(RUN("vessel " Y "--dump cut.exr --subtract plane:0,0,-1,1100"));
+    expect_ok(RUN("vessel " Y BARE "--dump cut.exr --subtract plane:0,0,-1,1100"));
     read_dump("cut.exr", &d); /* the half in front, z > -1100, goes */
     for (size_t i = 0; i < d.count; i++) {
         if (d.segment[i] == -1)
@@ -197,7 +198,7 @@ static void test_cuts(void **state) {
     }
     assert_in_range(cut, 200, left);
     image_exr_free(&d.image);
-    expect_ok(RUN("vessel " Y "--dump cut.exr --intersect sphere:0,10,-1100,5 --union "
+    expect_ok(RUN("vessel " Y BARE "--dump cut.exr --intersect sphere:0,10,-1100,5 --union "
                   "box:-9,-2,-1101,-5,2,-1099"));
     read_dump("cut.exr", &d);
     for (size_t i = 0; i < d.count; i++) {
@@ -217,8 +218,8 @@ static void test_cut_by_files(void **state) {
     write_file("box.obj", "v -20 5 -1110\nv 20 5 -1110\nv 20 30 -1110\nv -20 30 -1110\n"
                           "v -20 5 -1090\nv 20 5 -1090\nv 20 30 -1090\nv -20 30 -1090\n"
                           "f 4 3 2 1\nf 5 6 7 8\nf 1 2 6 5\nf 2 3 7 6\nf 3 4 8 7\nf 4 1 5 8\n");
-    expect_ok(RUN("vessel " Y "--dump box.exr --subtract box:-20,5,-1110,20,30,-1090"));
-    expect_ok(RUN("vessel " Y "--dump mesh.exr --subtract box.obj"));
+    expect_ok(RUN("vessel " Y BARE "--dump box.exr --subtract box:-20,5,-1110,20,30,-1090"));
+    expect_ok(RUN("vessel " Y BARE "--dump mesh.exr --subtract box.obj"));
     read_dump("box.exr", &box);
     read_dump("mesh.exr", &mesh);
     for (size_t i = 0; i < box.count; i++) {
@@ -229,7 +230,7 @@ static void test_cut_by_files(void **state) {
     assert_in_range(same, box.count - box.count / 200, box.count); /* sampled: the rim may differ */
     image_exr_free(&box.image);
     image_exr_free(&mesh.image);
-    expect_ok(RUN("vessel " Y "--dump tree.exr --subtract y.swc"));
+    expect_ok(RUN("vessel " Y BARE "--dump tree.exr --subtract y.swc"));
 }
 
 /* ---- numbers ---------------------------------------------------------------------------- */
@@ -298,6 +299,10 @@ static void test_no_gpu(void **state) {
     setenv("VK_ICD_FILENAMES", "/nowhere.json", 1);
     setenv("VK_DRIVER_FILES", "/nowhere.json", 1); /* the newer name, which wins */
     expect_ok(RUN("vessel --nodes 200 --layout l.json --backend vk"));
+    program_run listed = RUN("vessel --nodes 200 --link --target 32,8,12,16 --json --backend vk");
+    assert_int_equal(listed.code, 0);
+    assert_non_null(strstr(listed.out, "\"branches\""));
+    program_free(&listed);
     program_run run = RUN("vessel --nodes 200 " SMALL "-o never.png --backend vk");
     assert_int_equal(run.code, 1);
     assert_false(exists("never.png"));
@@ -310,11 +315,11 @@ static void test_cameras(void **state) {
     write_file("cams.json", "[{\"eye\":[4,12,-1040],\"center\":[4,12,-1100],\"up\":[0,1,0],"
                             "\"fovy\":32},{\"eye\":[60,12,-1100],\"center\":[0,12,-1100],"
                             "\"up\":[0,1,0],\"ortho_height\":40}]");
-    expect_ok(RUN("vessel y.swc --unit mm " SMALL "--cameras cams.json -o f_%%04d.png --dump "
+    expect_ok(RUN("vessel y.swc --unit mm " SMALL BARE "--cameras cams.json -o f_%%04d.png --dump "
                   "f_%%04d.exr --timings t.json --save-camera used.json"));
     assert_true(exists("f_0000.png") && exists("f_0001.png") && exists("f_0001.exr"));
     assert_false(exists("f_0002.png"));
-    expect_ok(RUN("vessel " Y "--dump one.exr"));
+    expect_ok(RUN("vessel " Y BARE "--dump one.exr"));
     read_dump("one.exr", &one);
     read_dump("f_0000.exr", &all);
     assert_memory_equal(one.segment, all.segment, 4 * one.count);
@@ -333,7 +338,9 @@ static void test_looks(void **state) {
                                         "--color #804020",
                                         "--set near_miss=exact",
                                         "--set outline_unit=mm --silhouette 1",
-                                        "--set layout_ph=0 --set width=2"};
+                                        "--set layout_ph=0 --set width=2",
+                                        "--set field_shadow=on",
+                                        "--subtract sphere:8,18,-1100,4 --shape-color nearest"};
     (void)state;
     for (size_t i = 0; i < sizeof looks / sizeof *looks; i++)
         expect_ok(RUN("vessel " Y "-o look.png %s", looks[i]));
@@ -345,6 +352,175 @@ static void test_looks(void **state) {
     assert_true(number(json, "segments") == 4);
     cJSON_Delete(json);
     program_free(&run);
+}
+
+/* ---- the layout beside the tree --------------------------------------------------------- */
+
+typedef struct pixels {
+    uint32_t width, height;
+    uint8_t *rgb; /* owned */
+} pixels;
+
+static void read_pixels(const char *path, pixels *out) {
+    char error[IMAGE_ERROR_SIZE];
+    if (!image_read_png(path, 3, &out->width, &out->height, &out->rgb, error))
+        fail_msg("%s", error);
+}
+
+/* How many pixels of a rectangle differ. */
+static uint32_t differing(const pixels *a, const pixels *b, uint32_t x, uint32_t y, uint32_t w,
+                          uint32_t h) {
+    uint32_t count = 0;
+    for (uint32_t j = y; j < y + h; j++) {
+        for (uint32_t i = x; i < x + w; i++) {
+            size_t at = 3 * ((size_t)j * a->width + i);
+            count += memcmp(a->rgb + at, b->rgb + at, 3) != 0;
+        }
+    }
+    return count;
+}
+
+/* The segments and branches of a target of the report against brute force. */
+static void check_target(const cJSON *target, const double ball[4], double risk) {
+    const cJSON *item;
+    double near[4], least = INFINITY;
+    int at_risk = 0, i = 0;
+    for (int k = 0; k < 4; k++) {
+        near[k] = limb_distance(k, ball) - ball[3];
+        at_risk += near[k] < risk;
+        least = fmin(least, near[k]);
+    }
+    assert_true(fabs(number(target, "least_distance") - least) < 1e-3);
+    assert_true(number(target, "risk") == risk);
+    const cJSON *segments = cJSON_GetObjectItem(target, "segments");
+    assert_int_equal(cJSON_GetArraySize(segments), at_risk);
+    cJSON_ArrayForEach(item, segments) {
+        int k = (int)number(item, "segment");
+        assert_in_range(k, i, 3);
+        assert_true(fabs(number(item, "distance") - near[k]) < 1e-3);
+        i = k + 1;
+    }
+    /* Branches end in nodes 1, 2 and 4; that of 4 is limbs 2 and 3. */
+    const double branches[5] = {0, near[0], near[1], 0, fmin(near[2], near[3])};
+    int count = (near[0] < risk) + (near[1] < risk) + (branches[4] < risk);
+    const cJSON *list = cJSON_GetObjectItem(target, "branches");
+    assert_int_equal(cJSON_GetArraySize(list), count);
+    cJSON_ArrayForEach(item, list) {
+        int rank = 1; /* its number: 1 is the nearest */
+        for (int k = 0; k < 5; k++)
+            rank += (k == 1 || k == 2 || k == 4) && branches[k] < number(item, "distance") - 1e-3;
+        assert_true(fabs(number(item, "distance") - branches[(int)number(item, "id")]) < 1e-3);
+        assert_true(number(item, "number") == rank);
+    }
+}
+
+#define LINK "vessel y.swc --unit mm --grid 48 --ssaa 1 --link --size 320x180 --risk 7 "
+static const double risk_balls[2][4] = {{8, 18, -1090, 2}, {-8, 18, -1095, 1}};
+
+/* Both backends give the same page; a column shows its own target in both views. */
+static void test_link(void **state) {
+    pixels gl, vk, one;
+    (void)state;
+    program_run run = RUN(LINK "--target 8,18,-1090,2 --target -8,18,-1095,1 -o gl.png --json "
+                               "--dump link.exr");
+    assert_int_equal(run.code, 0);
+    cJSON *json = cJSON_Parse(run.out);
+    assert_non_null(json);
+    const cJSON *targets = cJSON_GetObjectItem(json, "targets");
+    assert_int_equal(cJSON_GetArraySize(targets), 2);
+    for (int i = 0; i < 2; i++)
+        check_target(cJSON_GetArrayItem(targets, i), risk_balls[i], 7);
+    cJSON_Delete(json);
+    program_free(&run);
+    expect_ok(RUN(LINK "--target 8,18,-1090,2 --target -8,18,-1095,1 -o vk.png --backend vk"));
+    read_pixels("gl.png", &gl);
+    read_pixels("vk.png", &vk);
+    assert_int_equal(gl.width, 320);
+    assert_int_equal(gl.height, 180);
+    assert_int_equal(differing(&gl, &vk, 0, 0, 320, 180), 0);
+    expect_ok(RUN(LINK "--target 8,18,-1090,2 --target 8,18,-1090,2 -o one.png"));
+    read_pixels("one.png", &one);
+    assert_in_range(differing(&gl, &one, 0, 0, 155, 180), 0, 0); /* the first column is the same */
+    assert_in_range(differing(&gl, &one, 165, 20, 150, 40), 100, 6000); /* the second tree */
+    assert_in_range(differing(&gl, &one, 165, 70, 150, 40), 100, 6000); /* and its layout */
+    free(gl.rgb);
+    free(vk.rgb);
+    free(one.rgb);
+}
+
+/* The pattern marks what is at risk, and that alone; without a target the colours are the layout's;
+ * nothing of it needs a picture. */
+static void test_risk(void **state) {
+    pixels with, without;
+    dump d;
+    uint32_t inside = 0, outside = 0, marked = 0;
+    (void)state;
+    expect_ok(RUN("vessel " Y "--target 0,-4,-1100,1 --range 0,40 --colormap gray --risk 8 "
+                  "--set ssp_period=3 --size 288x216 -o with.png --dump risk.exr"));
+    expect_ok(
+        RUN("vessel " Y
+            "--target 0,-4,-1100,1 --range 0,40 --colormap gray --size 288x216 -o without.png"));
+    read_pixels("with.png", &with);
+    read_pixels("without.png", &without);
+    read_dump("risk.exr", &d);
+    for (uint32_t i = 0; i < d.count; i++) {
+        bool differs = memcmp(with.rgb + 3 * i, without.rgb + 3 * i, 3) != 0;
+        inside += d.segment[i] >= 0 && d.distance[i] < 4;
+        marked += d.segment[i] >= 0 && d.distance[i] < 4 && differs;
+        outside += differs && !(d.segment[i] >= 0 && d.distance[i] < 12);
+    }
+    assert_int_equal(outside, 0);
+    assert_in_range(marked, inside / 5, inside * 4 / 5);
+    image_exr_free(&d.image);
+    free(with.rgb);
+    free(without.rgb);
+    expect_ok(RUN(LINK "--path -5,-10,-1100:-5,12,-1100 -o path.png --legend right"));
+    expect_ok(RUN("vessel y.swc --unit mm --grid 48 --ssaa 1 --link --size 240x120 -o plain.png "
+                  "--set layout_radial=on --frames 2"));
+    assert_true(exists("plain_0001.png"));
+}
+
+/* A scale beside the colours; colours that show no number have none. */
+static void test_legend(void **state) {
+    pixels with, without;
+    (void)state;
+    expect_ok(RUN("vessel " Y "--color radius --legend right --size 288x216 -o with.png"));
+    expect_ok(RUN("vessel " Y "--color radius --size 288x216 -o without.png"));
+    read_pixels("with.png", &with);
+    read_pixels("without.png", &without);
+    assert_int_equal(differing(&with, &without, 0, 0, 150, 216), 0);
+    assert_in_range(differing(&with, &without, 150, 0, 138, 216), 500, 20000);
+    free(with.rgb);
+    free(without.rgb);
+    expect_fault(RUN("vessel " Y "--legend left -o never.png"), 1, "--legend");
+    assert_false(exists("never.png"));
+}
+
+/* What needs texture coordinates turns them on: ink, and the images of a dump. */
+static void test_implied(void **state) {
+    static const char *const inks[] = {"stipple", "hatch",  "crosshatch",
+                                       "layered", "shadow", "void"};
+    image_exr exr;
+    pixels plain, ink;
+    (void)state;
+    expect_ok(RUN("vessel " Y "--dump on.exr -o plain.png"));
+    assert_true(image_read_exr("on.exr", &exr, NULL));
+    assert_non_null(image_exr_channel(&exr, "uv.U", NULL));
+    assert_non_null(image_exr_channel(&exr, "guide.X", NULL));
+    assert_non_null(image_exr_channel(&exr, "bgposition.Z", NULL));
+    image_exr_free(&exr);
+    expect_ok(RUN("vessel " Y "--dump off.exr --set parameterization=off"));
+    assert_true(image_read_exr("off.exr", &exr, NULL));
+    assert_null(image_exr_channel(&exr, "uv.U", NULL));
+    image_exr_free(&exr);
+    read_pixels("plain.png", &plain);
+    for (size_t i = 0; i < sizeof inks / sizeof *inks; i++) {
+        expect_ok(RUN("vessel " Y "-o ink.png --style %s --shadow-width 9", inks[i]));
+        read_pixels("ink.png", &ink);
+        assert_in_range(differing(&plain, &ink, 0, 0, 96, 72), i == 4 ? 1 : 50, 96 * 72);
+        free(ink.rgb);
+    }
+    free(plain.rgb);
 }
 
 static void test_faults(void **state) {
@@ -359,6 +535,10 @@ static void test_faults(void **state) {
         {"vessel y.swc --layout l.txt", ".svg or .json", 2},
         {"vessel y.swc --nodes 10 -o a.png", "embedded", 2},
         {"vessel y.swc --color distance -o a.png", "--target", 2},
+        {"vessel y.swc --risk 5 -o a.png", "--target", 2},
+        {"vessel y.swc --path 0,0,0:1,1,1 --path 0,0,0:2,2,2 -o a.png", "--link", 2},
+        {"vessel y.swc --shape-color nearest -o a.png", "shape", 2},
+        {"vessel y.swc --link --size 60x40 -o a.png", "--size", 1},
         {"vessel y.swc --set silhouete=1 -o a.png", "silhouette", 2},
         {"vessel y.swc --style wild -o a.png", "--style", 2},
         {"vessel none.swc -o a.png", "none.swc", 1},
@@ -382,6 +562,9 @@ static void test_help(void **state) {
     program_run run = RUN("help vessel");
     assert_int_equal(run.code, 0);
     assert_non_null(strstr(run.out, "--subtract"));
+    assert_non_null(strstr(run.out, "--link"));
+    assert_non_null(strstr(run.out, "--risk"));
+    assert_non_null(strstr(run.out, "--legend"));
     assert_non_null(strstr(run.out, "--silhouette"));
     assert_non_null(strstr(run.out, "--layout-ph"));
     program_free(&run);
@@ -407,7 +590,9 @@ int main(int argc, char **argv) {
         cmocka_unit_test(test_dump),         cmocka_unit_test(test_cuts),
         cmocka_unit_test(test_cut_by_files), cmocka_unit_test(test_layout_and_tree),
         cmocka_unit_test(test_path),         cmocka_unit_test(test_cameras),
-        cmocka_unit_test(test_looks),        cmocka_unit_test(test_no_gpu),
+        cmocka_unit_test(test_looks),        cmocka_unit_test(test_link),
+        cmocka_unit_test(test_risk),         cmocka_unit_test(test_legend),
+        cmocka_unit_test(test_implied),      cmocka_unit_test(test_no_gpu),
     };
     if (argc < 2)
         return 1;

@@ -18,13 +18,12 @@ static void check(bool holds) {
 }
 
 static void check_attributes(const io_attribute *attributes, uint32_t count, uint32_t rows) {
-    float sum = 0; /* touches every value */
+    volatile float sum = 0; /* touches every value */
     for (uint32_t i = 0; i < count; i++) {
         check(attributes[i].name && attributes[i].data && attributes[i].components);
         for (size_t k = 0; k < (size_t)rows * attributes[i].components; k++)
             sum += attributes[i].data[k];
     }
-    check(sum == sum || sum != sum);
 }
 
 static void check_tree(const io_tree *tree) {

@@ -208,6 +208,70 @@ static void parts_may_be_absent(void **state) {
     picture_free(&p);
 }
 
+/* Barycentric coordinates and depth -z of where the ray (x, y, -1) meets a triangle. False: beside.
+ */
+static bool meets(const float *p, double x, double y, double *least, double *depth) {
+    const double d[3] = {x, y, -1};
+    double e[2][3], n[3], dot = 0, at = 0, sum = 0;
+    for (int k = 0; k < 3; k++) {
+        e[0][k] = (double)p[3 + k] - (double)p[k];
+        e[1][k] = (double)p[6 + k] - (double)p[k];
+    }
+    for (int k = 0; k < 3; k++) {
+        int i = (k + 1) % 3, j = (k + 2) % 3;
+        n[k] = e[0][i] * e[1][j] - e[0][j] * e[1][i];
+        dot += n[k] * d[k];
+        at += n[k] * (double)p[k];
+    }
+    *depth = at / dot;
+    *least = INFINITY;
+    for (int c = 0; c < 3; c++) { /* the areas that the point cuts off */
+        double a[3], b[3], area = 0, all = 0;
+        for (int k = 0; k < 3; k++) {
+            a[k] = (double)p[3 * ((c + 1) % 3) + k] - *depth * d[k];
+            b[k] = (double)p[3 * ((c + 2) % 3) + k] - *depth * d[k];
+            all += n[k] * n[k];
+        }
+        for (int k = 0; k < 3; k++)
+            area += n[k] * (a[(k + 1) % 3] * b[(k + 2) % 3] - a[(k + 2) % 3] * b[(k + 1) % 3]);
+        sum += area / all;
+        *least = fmin(*least, area / all);
+    }
+    return fabs(sum - 1) < 1e-9 && *least > 0;
+}
+
+/* A mesh covers the pixels whose ray meets it behind the near plane. */
+static void cover_is_what_rays_meet(void **state) {
+    static const uint32_t corners[3] = {0, 1, 2};
+    uint32_t random = 77, covered = 0, cut = 0;
+    (void)state;
+    for (int round = 0; round < 400; round++) {
+        float p[9], image[W * H];
+        backdrop_mesh mesh = {1, p, corners, {0}};
+        mesh.to_clip[0] = mesh.to_clip[5] = 1; /* near 1, far 10 */
+        mesh.to_clip[10] = -10.0 / 9;
+        mesh.to_clip[14] = -10.0 / 9;
+        mesh.to_clip[11] = -1;
+        for (int i = 0; i < 9; i++)
+            p[i] = (float)(next(&random) % 2000) / 500 - (i % 3 == 2 ? 4 : 2);
+        memset(image, 0, sizeof image);
+        image[5] = 9;
+        backdrop_cover(&mesh, W, H, 0.5f, image);
+        assert_true(image[5] == 9);
+        for (int i = 0; i < W * H; i++) {
+            double x = 2 * (i % W + 0.5) / W - 1, y = 1 - 2 * (i / W + 0.5) / H, least, depth;
+            bool met = meets(p, x, y, &least, &depth);
+            if (fabs(least) < 1e-6 || fabs(depth - 1) < 1e-6 || i == 5)
+                continue;
+            cut += met && depth < 1;
+            met = met && depth > 1;
+            covered += met;
+            assert_true((image[i] == 0.5f) == met);
+        }
+    }
+    assert_true(covered > 5000 && cut > 1000);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(over_is_the_over_operator),
@@ -216,6 +280,7 @@ int main(void) {
         cmocka_unit_test(outline_is_where_the_border_is_near),
         cmocka_unit_test(outline_has_the_asked_width),
         cmocka_unit_test(lines_lie_between_backdrop_and_outline),
+        cmocka_unit_test(cover_is_what_rays_meet),
         cmocka_unit_test(parts_may_be_absent),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

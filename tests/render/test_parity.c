@@ -5,6 +5,7 @@
 #include "render_host.h"
 
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 
 static render_device gl, vk;
@@ -219,6 +220,61 @@ static void test_two_sets(void **state) {
 }
 
 /* More segments than a processor takes at once: it catches up in between (4 texels a line). */
+/* Lines first .. end - 1 of `from`. */
+static void part(render_lines *lines, const render_lines *from, uint32_t first, uint32_t end) {
+    for (uint32_t l = first; l < end; l++) {
+        for (uint32_t i = from->offsets[l]; i < from->offsets[l + 1]; i++) {
+            const float *p = from->points + 3 * (size_t)i;
+            render_point(lines, (double)p[0], (double)p[1], (double)p[2]);
+        }
+        render_line(lines);
+    }
+    memcpy(lines->colors, from->colors + 4 * (size_t)from->offsets[first],
+           4 * (size_t)lines->point_count);
+}
+
+static uint32_t unlike(const char *image, const render_result *a, const render_result *b) {
+    const render_image *first = render_find(a, image, 0), *second = render_find(b, image, 0);
+    uint32_t count = 0;
+    assert_int_equal(first->width * first->height, second->width * second->height);
+    float *x = render_floats(first, 0), *y = render_floats(second, 0);
+    for (uint32_t i = 0; i < first->width * first->height; i++)
+        count += memcmp(&x[i], &y[i], sizeof *x) != 0;
+    free(x);
+    free(y);
+    return count;
+}
+
+/* A set that is cut in two gives the picture of the whole when its halves occlude each other. */
+static void test_shared_occlusion(void **state) {
+    render_shot shot = mixed(0);
+    render_result whole, halves, apart;
+    render_lines front, back;
+    (void)state;
+    both();
+    memset(&front, 0, sizeof front);
+    memset(&back, 0, sizeof back);
+    part(&front, &board, 0, 90);
+    part(&back, &board, 90, board.line_count);
+    shot.sphere[3] = 20;
+    render_draw(&gl, &shot, &whole);
+    shot.lines[0] = &front;
+    shot.lines[1] = &back;
+    shot.set_count = 2;
+    render_draw(&gl, &shot, &apart);
+    assert_true(unlike("out", &whole, &apart) > 100);
+    shot.frame_flags = LAO_FRAME_SHARED_OCCLUSION;
+    render_draw(&gl, &shot, &halves);
+    assert_int_equal(unlike("ao", &whole, &halves), 0);
+    assert_int_equal(unlike("out", &whole, &halves), 0);
+    compare("two sets that occlude each other", &shot);
+    render_free(&whole);
+    render_free(&halves);
+    render_free(&apart);
+    render_lines_free(&front);
+    render_lines_free(&back);
+}
+
 static void test_many_segments(void **state) {
     render_shot shot = mixed(0);
     render_lines crowd;
@@ -300,6 +356,7 @@ int main(int argc, char **argv) {
         cmocka_unit_test(test_samples),
         cmocka_unit_test(test_levels),
         cmocka_unit_test(test_two_sets),
+        cmocka_unit_test(test_shared_occlusion),
         cmocka_unit_test(test_many_segments),
         cmocka_unit_test(test_targets),
         cmocka_unit_test(test_host_depth),

@@ -12,17 +12,17 @@ LAO_FN lao_v4 surface_mirror(lao_uint row, float s, lao_v4 eye, lao_v3 p, lao_v3
         return lao_v4_make(s, eye.x, eye.y, eye.z);
     }
     if (row == 1u) {
-        return vsf_ghost(vsf_lookup(x, y), vsf_premultiply(lao_v3_make(0.9f, 0.5f, 0.1f), x),
-                         vsf_premultiply(lao_v3_make(0.2f, 0.3f, 0.4f), vsf_fresnel(facing, 1.5f)),
-                         vsf_add(vsf_lookup(y * y, -y), vsf_lookup(x, y)));
+        lao_v4 flow = vsf_mapped(lao_v3_make(0.9f, 0.5f, 0.1f), x, y, 0.7f);
+        lao_v4 back = vsf_premultiply(lao_v3_make(0.2f, 0.3f, 0.4f), vsf_fresnel(facing, 1.5f));
+        lao_v4 behind = vsf_add(vsf_lookup(y * y, -y), vsf_lookup(x, y));
+        return vsf_over(vsf_lookup(x, y), vsf_over(flow, vsf_over(back, behind)));
     }
     if (row == 2u) {
         float sigma = vsf_blur_sigma(vsf_outside(z, 39.0f, 40.5f), 0.2f, 8.0f);
         return lao_v4_make(vsf_fresnel_rim(facing, 2.5f), sigma,
                            vsf_blur_weight(0.25f * near_by, sigma, z, 0.5f * sigma, 40.0f),
-                           vsf_highlight(p.x * 10.0f, p.y * 10.0f, 1600.0f));
+                           vsf_map_place(x, 256.0f).x);
     }
     lao_v3 shaded = vsf_unsharp(lao_v3_make(x, lao_abs(y), 0.5f), near_by, lao_abs(p.z), 2.0f);
-    lao_v3 pale = vsf_desaturate(shaded, 0.3f);
-    return lao_v4_make(pale.x, pale.y, pale.z, shaded.x);
+    return lao_v4_make(shaded.x, shaded.y, shaded.z, vsf_map_place(lao_abs(y), 33.0f).y);
 }

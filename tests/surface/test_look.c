@@ -94,29 +94,27 @@ static void coordinates_of_the_lookup(void **state) {
                 vsf_near_mix(VSF_FAR, 2, 0.5f) == VSF_FAR);
 }
 
-static void highlights(void **state) {
-    const float beta = 1600; /* med = 800 ms */
+/* A map is met at its colours and is straight between them; what is near hides what is behind it
+   however flat the wall is there, what is far does not. */
+static void colours_of_a_map(void **state) {
+    lao_v2 place;
     (void)state;
-    assert_true(vsf_highlight(100, 100, beta) == 1);
-    near_to((double)vsf_highlight(133.302f, 100, beta), 0.5, 1e-5);
-    near_to((double)vsf_highlight(100, 133.302f, beta), 0.5, 1e-5);
-    assert_true(vsf_highlight(147.2f, 100, beta) == 0.25f); /* 1.17741 sqrt(beta) = 47.1 */
-    assert_true(vsf_highlight(147.0f, 100, beta) > 0.25f);
-    assert_true(vsf_highlight(1e9f, 0, beta) == 0.25f);
-    for (int i = 0; i < 400; i++) {
-        float t = (float)i / 8;
-        double want = exp(-(double)t * (double)t / 1600);
-        near_to((double)vsf_highlight(0, t, beta), want > 0.25 ? want : 0.25, 1e-6);
+    for (int i = 0; i < 256; i++) {
+        place = vsf_map_place((float)i / 255, 256);
+        near_to((double)(place.x + place.y), i, 1e-4);
+        assert_true(place.y >= 0 && place.y <= 254 && place.y == floorf(place.y));
     }
-    {
-        lao_v3 c = lao_v3_make(1, 0.2f, 0.4f), grey = vsf_desaturate(c, 0),
-               same = vsf_desaturate(c, 1);
-        near_to((double)grey.x, 0.6, 1e-6);
-        assert_true(grey.x == grey.y && grey.y == grey.z);
-        near_to((double)same.y, 0.2, 1e-6);
-        c = vsf_desaturate(c, 0.5f);
-        near_to((double)(c.x + c.y), 1.2, 1e-6); /* lightness stays: least + most */
-    }
+    place = vsf_map_place(7, 256);
+    assert_true(place.x == 1 && place.y == 254);
+    place = vsf_map_place(-7, 256);
+    assert_true(place.x == 0 && place.y == 0);
+    place = vsf_map_place(0.5f, 1);
+    assert_true(place.x == 0 && place.y == 0);
+    const lao_v3 color = lao_v3_make(1, 0.5f, 0.25f);
+    is_color(vsf_mapped(color, 0, 0, 1), 0, 0, 0, 0);
+    is_color(vsf_mapped(color, 0, -0.5f, 1), 0.5, 0.25, 0.125, 0.5);
+    is_color(vsf_mapped(color, 1, 0.5f, 0.8f), 0.8, 0.4, 0.2, 0.8);
+    is_color(vsf_mapped(color, 0.5f, 0.9f, 0.8f), 0.9, 0.45, 0.225, 0.9);
 }
 
 static void opacities_of_the_baselines(void **state) {
@@ -146,10 +144,10 @@ static void layers_compose_front_to_back(void **state) {
     (void)state;
     is_color(vsf_over(none, back), 0.2, 0.4, 0.6, 1);
     is_color(vsf_over(back, flow), 0.2, 0.4, 0.6, 1);
-    is_color(vsf_ghost(none, none, none, white), 1, 1, 1, 1);
-    is_color(vsf_ghost(none, flow, back, white), 0.55, 0.6, 0.35, 1);
+    is_color(vsf_over(none, white), 1, 1, 1, 1);
+    is_color(vsf_over(flow, vsf_over(back, white)), 0.55, 0.6, 0.35, 1);
     want = vsf_over(front, lao_v4_make(0.55f, 0.6f, 0.35f, 1));
-    got = vsf_ghost(front, flow, back, white);
+    got = vsf_over(front, vsf_over(flow, vsf_over(back, white)));
     is_color(got, (double)want.x, (double)want.y, (double)want.z, 1);
     is_color(vsf_add(front, back), 0.45, 0.4 + 0.25 * 0.446919, 0.6, 1);
     for (int i = 0; i < 1000;
@@ -271,7 +269,7 @@ static void all_is_finite(void **state) {
         lao_v3 p = lao_v3_make(b, c, a);
         assert_true(isfinite(vsf_near_x(fabsf(a), b)));
         assert_true(isfinite(vsf_near_mix(fabsf(a), fabsf(b), c)));
-        assert_true(isfinite(vsf_highlight(a, b, fabsf(c) + 1)));
+        assert_true(isfinite(vsf_map_place(a, 2 + fabsf(b)).x));
         assert_true(isfinite(vsf_fresnel(a, fabsf(b) + 0.01f)));
         assert_true(isfinite(vsf_fresnel_rim(a, fabsf(b) + 0.01f)));
         assert_true(isfinite(vsf_blur_weight(fabsf(a), fabsf(b), c, fabsf(b), a)));
@@ -285,7 +283,7 @@ int main(void) {
         cmocka_unit_test(anchors_of_the_lookup),
         cmocka_unit_test(lookup_is_continuous),
         cmocka_unit_test(coordinates_of_the_lookup),
-        cmocka_unit_test(highlights),
+        cmocka_unit_test(colours_of_a_map),
         cmocka_unit_test(opacities_of_the_baselines),
         cmocka_unit_test(layers_compose_front_to_back),
         cmocka_unit_test(focus_blur),

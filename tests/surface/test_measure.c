@@ -401,7 +401,7 @@ static void buffers_describe_an_object(void **state) {
     const lao_buffer_row *rows = vsf_buffer_rows(&count);
     (void)state;
     vsf_buffers_describe(&f.buffers, list, &desc);
-    assert_int_equal(count, 6);
+    assert_int_equal(count, 7);
     assert_int_equal(desc.item_count, 1800);
     assert_int_equal(desc.triangle_count, 3600);
     assert_int_equal(desc.buffer_count, 4);

@@ -177,9 +177,18 @@ static void check_measure(const subject *s, const render_result *result) {
     free(measure);
 }
 
+static lao_v4 mapped(const vsf_object *object, float x, float y, float opacity) {
+    lao_v2 place = vsf_map_place(x, VSF_MAP_COLORS);
+    lao_v4 colors[2];
+    memcpy(colors, object->map + 4 * (size_t)place.y, sizeof colors);
+    lao_v4 c = vsf_mix(colors[0], colors[1], place.x);
+    return vsf_mapped(lao_v3_make(c.x, c.y, c.z), x, y, opacity);
+}
+
 /* The look-up against C, from the measure and nearness that the same pixel kept. Returns how many
    pixels are covered. */
-static uint32_t check_lookup(const scene *s, const render_result *result) {
+static uint32_t check_lookup(const scene *s, const vsf_object *object,
+                             const render_result *result) {
     const render_image *position = need(result, "surface_position", 0);
     const render_image *normal = need(result, "surface_normal", 0);
     const render_image *lut = need(result, "surface_lut", 0);
@@ -194,7 +203,9 @@ static uint32_t check_lookup(const scene *s, const render_result *result) {
                 continue;
             }
             covered++;
-            wanted = vsf_lookup(l.w, vsf_measure_y(n.w, filled.brightness));
+            float measure = vsf_measure_y(n.w, filled.brightness);
+            wanted = filled.near_colors > 0 ? mapped(object, l.w, measure, filled.near_opacity)
+                                            : vsf_lookup(l.w, measure);
             assert_memory_equal(&wanted, &l, 3 * sizeof(float));
             assert_true(fabsf(n.x * n.x + n.y * n.y + n.z * n.z - 1) < 1e-5f);
         }
@@ -209,13 +220,17 @@ static void per_vertex_and_pixel(void **state) {
     (void)state;
     subject_make(&torus, surface_torus(5, 2, 120, 60)); /* 7200 vertices: four rows of texels */
     subject_near(&torus);
+    for (uint32_t i = 0; i < 4 * VSF_MAP_COLORS; i++) {
+        torus.object.map[i] = (float)(i * 37 % 101) / 101;
+    }
     scene_make(&s, &torus);
     s.surface.near_gamma = 6;
     s.surface.near_part = 0.25f;
-    for (int round = 0; round < 6; round++) {
+    for (int round = 0; round < 7; round++) {
         s.surface.shading = (float)(round % 3);
         s.surface.near_source = round == 3 ? VSF_NEAR_VALUE : VSF_NEAR_DISTANCE;
         s.surface.value_high = 5;
+        s.surface.near_colors = round == 6 ? VSF_NEAR_MAP : VSF_NEAR_HUES;
         s.surface.falloff_form = round == 5 ? VSF_FALLOFF_RIM : VSF_FALLOFF_PAPER;
         s.surface.blend = round == 4 ? VSF_BLEND_ADD : VSF_BLEND_OVER;
         if (round == 1 || round == 4) {
@@ -230,7 +245,7 @@ static void per_vertex_and_pixel(void **state) {
         draw_both(&s, results);
         for (int i = 0; i < 2; i++) {
             check_measure(&torus, &results[i]);
-            assert_in_range(check_lookup(&s, &results[i]), 2000, 4 * WIDTH * HEIGHT);
+            assert_in_range(check_lookup(&s, &torus.object, &results[i]), 2000, 4 * WIDTH * HEIGHT);
         }
         free_both(results);
     }
@@ -553,10 +568,13 @@ static int sorted_squares(float x, float y, uint32_t found[6]) {
     return count;
 }
 
-static lao_v4 square_color(const subject *s, uint32_t i) {
-    const float *n = s->mesh.normals + 3 * (size_t)s->mesh.triangles[6 * i];
-    lao_v3 wall = lao_v3_make(0.86f, 0.81f, 0.76f);
-    return vsf_premultiply(vsf_wall(wall, n[2], 0.45f, 0.55f), 0.4f);
+/* A front face of a baseline whose normal has this cosine to the viewer. */
+static lao_v4 baseline_color(int shading, float facing) {
+    lao_v3 wall = vsf_wall(lao_v3_make(0.86f, 0.81f, 0.76f), facing, 0.45f, 0.55f);
+    return vsf_premultiply(wall, shading == VSF_SHADING_FRESNEL ? vsf_fresnel(facing, 1.5f) : 0.4f);
+}
+static lao_v4 square_color(const subject *s, int shading, uint32_t i) {
+    return baseline_color(shading, s->mesh.normals[3 * (size_t)s->mesh.triangles[6 * i] + 2]);
 }
 
 /* Every pixel against its sorted squares; those beyond the last layer do not count. */
@@ -568,16 +586,18 @@ static void layers(void **state) {
     scene_make(&s, &surface);
     s.shot.camera = render_camera(0, 0, 1, 40);
     render_orthographic(&s.shot.camera, 14, (double)WIDTH / HEIGHT, 1, 200);
-    s.surface.shading = VSF_SHADING_TRANSPARENT;
     s.surface.set = VSF_SET(layers);
-    for (int most = 0; most < 8; most++) {
+    for (int round = 0; round < 11; round++) { /* 0 to 7 layers; 1, 3 and 5 of the other baseline */
+        int shading = round < 8 ? VSF_SHADING_TRANSPARENT : VSF_SHADING_FRESNEL;
+        int most = round < 8 ? round : 2 * round - 15;
         render_result results[2];
         uint32_t deepest = 0, checked = 0;
         double worst = 0;
-        if (most == 6) {
+        if (round == 6) {
             render_reverse(&s.shot.camera);
         }
         s.surface.layers = (float)most;
+        s.surface.shading = (float)shading;
         draw_both(&s, results);
         const render_image *over = need(&results[0], "surface_over", 0);
         const render_image *position = need(&results[0], "surface_position", 0);
@@ -594,7 +614,7 @@ static void layers(void **state) {
                 }
                 deepest = (uint32_t)count > deepest ? (uint32_t)count : deepest;
                 for (int i = 0; i < count && i <= most; i++) {
-                    wanted = vsf_over(wanted, square_color(&surface, found[i]));
+                    wanted = vsf_over(wanted, square_color(&surface, shading, found[i]));
                 }
                 checked++;
                 worst = fmax(worst, fmax(fabs((double)(got.x - wanted.x)),
@@ -607,6 +627,182 @@ static void layers(void **state) {
         assert_int_equal(deepest, 6);
         assert_in_range(checked, 15000, 4 * WIDTH * HEIGHT);
         assert_true(worst < 0.002); /* half floats, once a layer */
+        free_both(results);
+    }
+    subject_free(&surface);
+}
+
+/* ---- closed surfaces within each other */
+
+enum { BALLS = 3 };
+static const double balls[BALLS][4] = {{0, 0, 0, 5}, {0.7, -0.4, 0.5, 3.2}, {-0.3, 0.2, 0.4, 1.7}};
+
+/* Unit normal at a direction from the centre: leaning over, or a ball would look alike at both ends
+   of a ray through it. */
+static void leaning(const double out[3], double n[3]) {
+    const double lean[3] = {0.2, 0.3, 0.4};
+    double size = 0;
+    for (int k = 0; k < 3; k++) {
+        n[k] = out[k] + lean[k];
+        size += n[k] * n[k];
+    }
+    for (int k = 0; k < 3; k++) {
+        n[k] /= sqrt(size);
+    }
+}
+
+/* Spheres within each other, as parts of one mesh. */
+static void balls_make(subject *s) {
+    surface_shape shape = surface_sphere(1, 5);
+    uint32_t n = shape.vertex_count, m = shape.triangle_count;
+    float *p = calloc(BALLS * n, 3 * sizeof *p), *normals = calloc(BALLS * n, 3 * sizeof *p);
+    uint32_t *t = calloc(BALLS * m, 3 * sizeof *t);
+    vsf_mesh_desc desc;
+    assert_true(p && normals && t);
+    for (uint32_t b = 0; b < BALLS; b++) {
+        for (uint32_t i = 0; i < n; i++) {
+            double out[3], normal[3];
+            for (uint32_t k = 0; k < 3; k++) {
+                out[k] = (double)shape.positions[3 * i + k];
+                p[3 * (b * n + i) + k] = (float)(balls[b][k] + balls[b][3] * out[k]);
+            }
+            leaning(out, normal);
+            for (uint32_t k = 0; k < 3; k++) {
+                normals[3 * (b * n + i) + k] = (float)normal[k];
+            }
+        }
+        for (uint32_t i = 0; i < 3 * m; i++) {
+            t[3 * b * m + i] = shape.triangles[i] + b * n;
+        }
+    }
+    memset(&desc, 0, sizeof desc);
+    desc.vertex_count = BALLS * n;
+    desc.positions = p;
+    desc.normals = normals;
+    desc.triangle_count = BALLS * m;
+    desc.triangles = t;
+    assert_int_equal(vsf_mesh_build(NULL, &desc, &s->mesh), LAO_OK);
+    assert_int_equal(vsf_object_make(NULL, &s->mesh, 0, &s->object), LAO_OK);
+    surface_shape_free(&shape);
+    free(p);
+    free(normals);
+    free(t);
+}
+
+/* Cosine of the normal of ball b where a ray is at t. */
+static double facing_at(int b, const double o[3], const double d[3], double t) {
+    double out[3], n[3], sum = 0, dd = 0;
+    for (int k = 0; k < 3; k++) {
+        out[k] = (o[k] + t * d[k] - balls[b][k]) / balls[b][3];
+    }
+    leaning(out, n);
+    for (int k = 0; k < 3; k++) {
+        sum += n[k] * d[k];
+        dd += d[k] * d[k];
+    }
+    return fabs(sum) / sqrt(dd);
+}
+
+/* Where a ray enters and leaves ball b. 1: it meets it, 0: not, -1: too close to tell. */
+static int meet(int b, const double o[3], const double d[3], double t[2]) {
+    double half = 0, c = -balls[b][3] * balls[b][3], dd = 0;
+    for (int k = 0; k < 3; k++) {
+        half += (balls[b][k] - o[k]) * d[k];
+        c += (balls[b][k] - o[k]) * (balls[b][k] - o[k]);
+        dd += d[k] * d[k];
+    }
+    double root = half * half - dd * c;
+    if (fabs(root) / dd < 0.15 * balls[b][3]) {
+        return -1;
+    }
+    t[0] = (half - sqrt(fmax(root, 0))) / dd;
+    t[1] = (half + sqrt(fmax(root, 0))) / dd;
+    return root > 0;
+}
+
+/* Colour along a ray: the front faces before the nearest back face, nearest first, and that back
+   face. Returns how many balls it meets, -1: too close to a silhouette to tell. */
+static int ray_color(lao_v3 origin, lao_v3 direction, int shading, lao_v4 *color) {
+    const double o[3] = {(double)origin.x, (double)origin.y, (double)origin.z};
+    const double d[3] = {(double)direction.x, (double)direction.y, (double)direction.z};
+    double front[BALLS], t[2], back = 1e9;
+    int fronts[BALLS], behind = 0, count = 0;
+    for (int b = 0; b < BALLS; b++) {
+        int met = meet(b, o, d, t), at = count;
+        if (met < 0) {
+            return -1;
+        }
+        for (; met && at > 0 && front[at - 1] > t[0]; at--) {
+            front[at] = front[at - 1];
+            fronts[at] = fronts[at - 1];
+        }
+        if (met) {
+            front[at] = t[0];
+            fronts[at] = b;
+            count++;
+        }
+        if (met && t[1] < back) {
+            back = t[1];
+            behind = b;
+        }
+    }
+    *color = lao_v4_make(0, 0, 0, 0);
+    for (int i = 0; i < count && front[i] < back; i++) {
+        float facing = (float)facing_at(fronts[i], o, d, front[i]);
+        *color = vsf_over(*color, baseline_color(shading, facing));
+    }
+    if (count > 0) {
+        float facing = (float)facing_at(behind, o, d, back);
+        lao_v3 wall = vsf_wall(lao_v3_make(0.86f, 0.81f, 0.76f), facing, 0.45f, 0.55f);
+        *color = vsf_over(*color, vsf_premultiply(wall, 1));
+    }
+    return count;
+}
+
+/* Both baselines of balls within balls, pixel by pixel against the faces along its ray. */
+static void nested(void **state) {
+    subject surface;
+    scene s;
+    (void)state;
+    balls_make(&surface);
+    assert_int_equal(vsf_mesh_layers(&surface.mesh), BALLS - 1);
+    scene_make(&s, &surface);
+    s.surface.set = VSF_SET(layers);
+    s.surface.layers = BALLS - 1;
+    for (int round = 0; round < 4; round++) {
+        render_result results[2];
+        uint32_t counts[BALLS + 1] = {0};
+        double worst = 0;
+        if (round == 2) {
+            render_orthographic(&s.shot.camera, 11, (double)WIDTH / HEIGHT, 1, 200);
+        }
+        int shading = round % 2 ? VSF_SHADING_FRESNEL : VSF_SHADING_TRANSPARENT;
+        s.surface.shading = (float)shading;
+        draw_both(&s, results);
+        const render_image *image = need(&results[0], "shaded", 0);
+        const lao_frame_uniforms *frame = &results[0].frame;
+        for (uint32_t y = 0; y < image->height; y++) {
+            for (uint32_t x = 0; x < image->width; x++) {
+                lao_v2 slope = lao_pixel_slope(frame->ray, (float)x + 0.5f, (float)y + 0.5f);
+                lao_v4 wanted, got = texel_of(image, x, y);
+                int count = ray_color(lao_ray_origin(frame->world, slope, frame->depth.w),
+                                      lao_ray_direction(frame->world, slope, frame->depth.w),
+                                      shading, &wanted);
+                if (count < 0) {
+                    continue;
+                }
+                counts[count]++;
+                worst = fmax(worst, fmax(fabs((double)(got.x - wanted.x)),
+                                         fabs((double)(got.w - wanted.w))));
+            }
+        }
+        for (int i = 0; i <= BALLS; i++) {
+            assert_in_range(counts[i], 200, 4 * WIDTH * HEIGHT);
+        }
+        if (worst > 1.5 / 255) {
+            print_error("round %d: worst %g\n", round, worst);
+        }
+        assert_true(worst <= 1.5 / 255); /* bytes, half floats and 20,000 flat triangles a ball */
         free_both(results);
     }
     subject_free(&surface);
@@ -761,6 +957,7 @@ int main(void) {
         cmocka_unit_test(composed),
         cmocka_unit_test(effects),
         cmocka_unit_test(layers),
+        cmocka_unit_test(nested),
         cmocka_unit_test(no_bleeding),
         cmocka_unit_test(shadow_of_a_step),
         cmocka_unit_test(layers_needed),

@@ -88,6 +88,25 @@ static void shapes_have_distances(void **state) {
         assert_near(length(g), 1, 1e-6);
         assert_near(sdv_shape_distance(q, *s) - sdv_shape_distance(p, *s), 1e-3, 1e-4);
     }
+    sdv_shape egg = shape(SDV_SHAPE_ELLIPSOID, 0, v4(1, 2, 3, 0), v4(4, 2, 3, 0));
+    for (int i = 0; i < 300; i++) { /* a bound of the least distance to places of the surface */
+        lao_v3 p = vessel_point(&seed, 7), e = sdv_ellipsoid_place(p, egg);
+        double least = INFINITY, sign = length(e) < 1 ? -1 : 1;
+        for (int k = 0; k < 20000; k++) {
+            lao_v3 u = vessel_direction(&seed);
+            lao_v3 q = v3(1 + 4 * (double)u.x, 2 + 2 * (double)u.y, 3 + 3 * (double)u.z);
+            least = fmin(least, length(lao_v3_sub(p, q)));
+        }
+        double d = (double)sdv_shape_distance(p, egg);
+        assert_true(sign * d >= 0 && fabs(d) <= least + 1e-5);
+        assert_true(fabs((double)sdv_shape_estimate(p, egg) - sign * least) <
+                    0.05 + (sign > 0 ? 0.35 : 1) * least);
+        lao_v3 on = lao_v3_along(v3(1, 2, 3), lao_v3_sub(p, v3(1, 2, 3)), 1 / (float)length(e));
+        lao_v3 g = sdv_shape_gradient(on, egg);
+        lao_v3 above = lao_v3_along(on, g, 1e-2f);
+        assert_near(sdv_shape_distance(on, egg), 0, 1e-5);
+        assert_near(sdv_shape_estimate(above, egg), 1e-2, 3e-4);
+    }
     lao_v3 zero = sdv_shape_gradient(v3(1, 2, 3), ball),
            middle = sdv_shape_gradient(v3(1, 2, 3), box);
     assert_near(length(zero), 1, 1e-6);
@@ -192,6 +211,138 @@ static void carving_opens_vessels(void **state) {
     sdv_tree_free(&t);
 }
 
+/* Rays past the tree, past a ball that is added and past what a cut has left: the near miss is
+   where the ray is nearest to what is drawn, not to what is cut away. */
+static void near_misses_of_shapes(void **state) {
+    (void)state;
+    const float p[] = {0, -20, 0, 0, 20, 0}, r[] = {2, 2};
+    const sdv_segment s[] = {{0, 1}};
+    sdv_tree t = tree_of(2, p, r, 1, s);
+    sdv_grid g = grid_of(&t, 96);
+    const sdv_shape list[2] = {
+        shape(SDV_SHAPE_PLANE, SDV_SUBTRACTION, v4(0, 1, 0, 0), v4(0, 0, 0, 0)), /* y < 0 goes */
+        shape(SDV_SHAPE_BALL, SDV_UNION, v4(14, 10, 5, 3), v4(0, 0, 0, 0))};
+    const sdv_shapes shapes = {list, 2, NULL, 0};
+    for (int i = 0; i < 2; i++) {
+        float reach = i ? 3.0f : 0.0f; /* exact, close */
+        sdv_ray ray = {v3(2.5f, 10, 40), v3(0, 0, -1), SDV_TRACE_NEAREST, reach};
+        sdv_hit hit;
+        sdv_trace_shapes(&g, &shapes, &ray, &hit, NULL);
+        assert_int_equal(hit.cone, SDV_NONE);
+        assert_near(hit.d_min, 0.5, 0.02); /* the vessel */
+        assert_near(hit.t_min, 40, 0.6);
+        ray.origin = v3(10.2f, 10, 40); /* the ball, whose middle is 3.8 mm beside */
+        sdv_trace_shapes(&g, &shapes, &ray, &hit, NULL);
+        assert_int_equal(hit.cone, SDV_NONE);
+        assert_near(hit.d_min, 0.8, 0.03);
+        assert_near(hit.t_min, 35, 0.6);
+        ray.origin = v3(1, -0.7f, 40); /* in front of the cut's rim: an edge at y = 0 */
+        sdv_trace_shapes(&g, &shapes, &ray, &hit, NULL);
+        assert_int_equal(hit.cone, SDV_NONE);
+        assert_near(hit.d_min, 0.7, 0.03);
+        ray.origin = v3(1, -10, 40); /* what is cut away is passed through */
+        sdv_trace_shapes(&g, &shapes, &ray, &hit, NULL);
+        assert_int_equal(hit.cone, SDV_NONE);
+        assert_true(hit.d_min > 3);
+        ray.origin = v3(2.3f, 10, -40); /* past the tree, then onto the ball */
+        ray.direction = lao_v3_unit(v3(12.0f - 2.3f, 0, 45), v3(0, 0, 1));
+        sdv_trace_shapes(&g, &shapes, &ray, &hit, NULL);
+        assert_true(hit.cone == SDV_CUT_CONE || hit.d_min < SDV_FAR);
+        ray.flags = 0;
+        sdv_trace_shapes(&g, &shapes, &ray, &hit, NULL);
+        assert_true(hit.d_min == SDV_FAR);
+    }
+    sdv_grid_free(&g);
+    sdv_tree_free(&t);
+}
+
+/* An organ around the tree, cut open, with the tree in it again: L19 Fig. 11. */
+static void tree_in_a_cut(void **state) {
+    (void)state;
+    const float p[] = {-20, 0, 0, 20, 0, 0}, r[] = {2, 2};
+    const sdv_segment s[] = {{0, 1}};
+    sdv_tree t = tree_of(2, p, r, 1, s);
+    sdv_grid g = grid_of(&t, 64);
+    const sdv_shape list[3] = {
+        shape(SDV_SHAPE_BALL, SDV_UNION, v4(0, 0, 0, 30), v4(0, 0, 0, 0)),
+        shape(SDV_SHAPE_BALL, SDV_SUBTRACTION, v4(0, 0, 20, 20), v4(0, 0, 0, 0)),
+        shape(SDV_SHAPE_TREE, SDV_UNION, v4(0, 0, 0, 0), v4(0, 0, 0, 0))};
+    sdv_shapes shapes = {list, 2, NULL, 0};
+    sdv_ray ray = {v3(1, 0, 60), v3(0, 0, -1), 0, 0};
+    sdv_hit hit;
+    sdv_trace_shapes(&g, &shapes, &ray, &hit, NULL); /* the cut took half of the vessel */
+    assert_int_equal(hit.cone, SDV_CUT_CONE);
+    assert_near(hit.position.z, 20 - sqrt(399), 2e-3);
+    shapes.count = 3;
+    sdv_trace_shapes(&g, &shapes, &ray, &hit, NULL);
+    assert_int_equal(hit.cone, 0);
+    assert_near(hit.position.z, 2, 2e-3);
+    ray.origin = v3(25, 0, 60); /* beside the cut: the organ */
+    sdv_trace_shapes(&g, &shapes, &ray, &hit, NULL);
+    assert_int_equal(hit.cone, SDV_CUT_CONE);
+    assert_near(hit.position.z, sqrt(900 - 625), 2e-3);
+    sdv_grid_free(&g);
+    sdv_tree_free(&t);
+}
+
+/* Along a chain of short segments whose radii alternate, exact normals jump at every joint; those
+   for shading turn slowly. Where a segment is alone both are the same. */
+static void smooth_normals(void **state) {
+    (void)state;
+    enum { CHAIN = 60 };
+    float p[3 * CHAIN] = {0}, r[CHAIN];
+    sdv_segment s[CHAIN];
+    for (uint32_t i = 0; i < CHAIN; i++) {
+        p[3 * i] = i + 1 < CHAIN ? 0.4f * (float)i : 60.0f; /* the last one is long */
+        r[i] = 3.0f + (i % 2 && i + 2 < CHAIN ? 0.05f : 0.0f);
+        s[i] = (sdv_segment){i, i + 1};
+    }
+    sdv_tree t = tree_of(CHAIN, p, r, CHAIN - 1, s);
+    sdv_grid g = grid_of(&t, 64);
+    double jump[2] = {0, 0};
+    lao_v3 before[2] = {{0, 0, 1}, {0, 0, 1}};
+    for (double x = 4; x < 20; x += 0.02) {
+        sdv_ray ray = {v3(x, 0, 20), v3(0, 0, -1), 0, 0};
+        sdv_hit hit;
+        sdv_trace(&g, &ray, &hit);
+        lao_v3 n[2] = {hit.normal,
+                       sdv_smooth_normal(&g, hit.position, hit.cone, hit.normal, 0.35f)};
+        for (int k = 0; k < 2 && x > 4.1; k++)
+            jump[k] = fmax(jump[k], length(lao_v3_sub(n[k], before[k])));
+        memcpy(before, n, sizeof n);
+        assert_near(length(n[1]), 1, 1e-6);
+        lao_v3 same = sdv_smooth_normal(&g, hit.position, hit.cone, hit.normal, 0);
+        assert_memory_equal(&same, &hit.normal, sizeof same);
+    }
+    assert_true(jump[0] > 0.1 && jump[1] < 0.1 * jump[0]);
+    sdv_ray ray = {v3(45, 0.5, 20), v3(0, 0, -1), 0, 0};
+    sdv_hit hit;
+    sdv_trace(&g, &ray, &hit);
+    lao_v3 alone = sdv_smooth_normal(&g, hit.position, hit.cone, hit.normal, 0.35f);
+    assert_near(length(lao_v3_sub(alone, hit.normal)), 0, 1e-6);
+    sdv_grid_free(&g);
+    sdv_tree_free(&t);
+}
+
+/* What a cut has taken away casts no shadow, what is added does. */
+static void shapes_cast_shadows(void **state) {
+    (void)state;
+    const float p[] = {-30, 0, 0, 30, 0, 0, 0, -30, 12, 0, 30, 12}, r[] = {5, 5, 1, 1};
+    const sdv_segment s[] = {{0, 1}, {2, 3}};
+    sdv_tree t = tree_of(4, p, r, 2, s);
+    sdv_grid g = grid_of(&t, 96);
+    const sdv_shape list[2] = {
+        shape(SDV_SHAPE_BOX, SDV_SUBTRACTION, v4(0, 0, 12, 0), v4(8, 8, 3, 0)),
+        shape(SDV_SHAPE_BALL, SDV_UNION, v4(15, 0, 60, 3), v4(0, 0, 0, 0))}; /* out of the box */
+    const sdv_shapes shapes = {list, 2, NULL, 0};
+    lao_v3 up = v3(0, 0, 1);
+    assert_true(sdv_shadow(&g, NULL, v3(0, 0, 5), up, 8, 0.1f) == 0.0f);
+    assert_true(sdv_shadow(&g, &shapes, v3(0, 0, 5), up, 8, 0.1f) > 0.5f);
+    assert_true(sdv_shadow(&g, &shapes, v3(15, 0, 5), up, 8, 0.1f) == 0.0f);
+    sdv_grid_free(&g);
+    sdv_tree_free(&t);
+}
+
 static void light_and_openness(void **state) {
     (void)state;
     /* a wide vessel below, a thin one above it, across */
@@ -200,16 +351,17 @@ static void light_and_openness(void **state) {
     sdv_tree t = tree_of(4, p, r, 2, s);
     sdv_grid g = grid_of(&t, 96);
     lao_v3 up = v3(0, 0, 1);
-    assert_true(sdv_shadow(&g, v3(0, 0, 5), up, 8, 0.1f) == 0.0f);  /* in the umbra */
-    assert_true(sdv_shadow(&g, v3(15, 0, 5), up, 8, 0.1f) > 0.95f); /* far beside */
+    assert_true(sdv_shadow(&g, NULL, v3(0, 0, 5), up, 8, 0.1f) == 0.0f);  /* in the umbra */
+    assert_true(sdv_shadow(&g, NULL, v3(15, 0, 5), up, 8, 0.1f) > 0.95f); /* far beside */
     double before = 0;
     for (double x = 1; x < 6; x += 0.25) { /* light comes back with the distance */
-        double lit = (double)sdv_shadow(&g, v3(x, 0, 5), up, 8, 0.1f);
+        double lit = (double)sdv_shadow(&g, NULL, v3(x, 0, 5), up, 8, 0.1f);
         assert_true(lit >= before - 0.02 && lit <= 1);
         before = lit;
     }
     assert_true(before > 0.9);
-    assert_true(sdv_shadow(&g, v3(0, 0, 13), up, 8, 0.1f) == 1.0f); /* on top: nothing above */
+    assert_true(sdv_shadow(&g, NULL, v3(0, 0, 13), up, 8, 0.1f) ==
+                1.0f); /* on top: nothing above */
     float open = sdv_openness(&g, v3(20, 0, 5), up, 4, 0),
           below = sdv_openness(&g, v3(0, 0, 5), up, 8, 0);
     assert_true(open > 0.99f && below < 0.9f && below > 0.1f);
@@ -439,6 +591,10 @@ int main(void) {
         cmocka_unit_test(shapes_have_distances),
         cmocka_unit_test(boolean_operations),
         cmocka_unit_test(carving_opens_vessels),
+        cmocka_unit_test(near_misses_of_shapes),
+        cmocka_unit_test(shapes_cast_shadows),
+        cmocka_unit_test(tree_in_a_cut),
+        cmocka_unit_test(smooth_normals),
         cmocka_unit_test(light_and_openness),
         cmocka_unit_test(pieces_are_exact),
         cmocka_unit_test(targets_equal_brute_force),

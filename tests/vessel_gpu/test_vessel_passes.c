@@ -57,7 +57,7 @@ static void ray_of(const lao_frame_uniforms *frame, uint32_t x, uint32_t y, sdv_
 static float reach_of(const lao_frame_uniforms *frame) {
     float zoom = sdv_zoom(frame->scale, frame->depth, frame->depth.x + frame->depth.z, 1);
     return sdv_near_miss_reach(sdv_outline_width(1.25f, 0, zoom), sdv_outline_width(0.8f, 0, zoom),
-                               1.5f, frame->depth.z);
+                               1.5f, 0, frame->depth.z);
 }
 
 /* The traced images against C; returns how many pixels hit. */
@@ -130,12 +130,22 @@ static bool shade_of(const subject *tree, const float *v, const lao_frame_unifor
         return true;
     if (missed)
         return false;
+    normal = sdv_smooth_normal(&tree->grid, p, (uint32_t)hit.w, normal,
+                               v[SDV_SETTING_ID_joint_smoothness]);
     if (v[SDV_SETTING_ID_field_occlusion] > 0)
         light = sdv_dimmed(light,
                            1.0f - sdv_openness(&tree->grid, p, normal,
                                                0.01f * v[SDV_SETTING_ID_occlusion_reach] * diameter,
                                                r.w > 0.5f),
                            v[SDV_SETTING_ID_occlusion_strength]);
+    if (v[SDV_SETTING_ID_field_shadow] > 0) {
+        lao_v3 lamp = sdv_shadow_light(frame->world, v[SDV_SETTING_ID_shadow_light_x],
+                                       v[SDV_SETTING_ID_shadow_light_y]);
+        float lit =
+            sdv_shadow(&tree->grid, NULL, p, lamp, 1.0f / v[SDV_SETTING_ID_field_shadow_softness],
+                       sdv_shadow_bias(tree->grid.cell));
+        light = sdv_dimmed(light, 1.0f - lit, v[SDV_SETTING_ID_field_shadow_strength]);
+    }
     if (near)
         light = sdv_dimmed(light,
                            sdv_depth_shadow(n.w, r.y, r.x, v[SDV_SETTING_ID_shadow_ratio],
@@ -211,6 +221,10 @@ static void perspective(void **state) {
     check(&s, &tree, 300);
     s.vessel.near_miss = SDV_NEAR_MISS_NONE;
     check(&s, &tree, 300);
+    s.vessel.field_shadow = 1;
+    s.vessel.joint_smoothness = 0;
+    s.vessel.set |= SDV_SET(joint_smoothness);
+    check(&s, &tree, 300);
     subject_free(&tree);
 }
 
@@ -243,7 +257,7 @@ static void from_within(void **state) {
 }
 
 /* The tree combined with a shape of every kind, field included, by all operations. */
-enum { SAMPLES = 5, SHAPES = 4 };
+enum { SAMPLES = 5, SHAPES = 6 };
 typedef struct carving {
     sdv_shape list[SHAPES];
     float samples[SAMPLES * SAMPLES * SAMPLES];
@@ -256,6 +270,8 @@ static void carving_make(carving *c, uint32_t count) {
         {{0, 0, 0, 0}, {12, 9, 14, 0}, SDV_SHAPE_BOX, SDV_INTERSECTION},
         {{-8, -8, -8, 4}, {SAMPLES, SAMPLES, SAMPLES, 0}, SDV_SHAPE_FIELD, SDV_UNION},
         {{0.6f, 0, 0.8f, 3}, {0, 0, 0, 0}, SDV_SHAPE_PLANE, SDV_INTERSECTION},
+        {{0, 0, 0, 0}, {0, 0, 0, 0}, SDV_SHAPE_TREE, SDV_UNION},
+        {{4, 2, 1, 0}, {5, 3, 4, 0}, SDV_SHAPE_ELLIPSOID, SDV_UNION},
     };
     memset(c, 0, sizeof *c);
     memcpy(c->list, list, sizeof list);
@@ -270,8 +286,8 @@ static void carving_make(carving *c, uint32_t count) {
     c->shapes.field_count = SAMPLES * SAMPLES * SAMPLES;
 }
 
-static uint32_t check_carved(const subject *tree, const carving *c, const render_result *result,
-                             uint32_t *cut) {
+static uint32_t check_carved(const scene *s, const subject *tree, const carving *c,
+                             const render_result *result, uint32_t *cut) {
     const render_image *position = render_find(result, "vessel_position", 0);
     const render_image *normal = render_find(result, "vessel_normal", 0);
     const render_image *ray_image = render_find(result, "vessel_ray", 0);
@@ -284,6 +300,8 @@ static uint32_t check_carved(const subject *tree, const carving *c, const render
         sdv_ray ray;
         sdv_hit hit;
         ray_of(&result->frame, x, y, &ray);
+        ray.flags = s->vessel.near_miss == SDV_NEAR_MISS_NONE ? 0 : SDV_TRACE_NEAREST;
+        ray.reach = s->vessel.near_miss == SDV_NEAR_MISS_CLOSE ? reach_of(&result->frame) : 0.0f;
         sdv_trace_shapes(&tree->grid, &c->shapes, &ray, &hit, &shape);
         bool is_cut = hit.cone == SDV_CUT_CONE;
         q = lao_v4_make(hit.position.x, hit.position.y, hit.position.z,
@@ -291,8 +309,8 @@ static uint32_t check_carved(const subject *tree, const carving *c, const render
                         : is_cut             ? -2.0f
                                              : (float)hit.cone);
         m = lao_v4_make(hit.normal.x, hit.normal.y, hit.normal.z, hit.d_min);
-        t = lao_v4_make(hit.t, is_cut ? (float)shape : 0.0f, (float)hit.steps,
-                        hit.inside ? 1.0f : 0.0f);
+        t = lao_v4_make(hit.t, hit.t_min, (float)hit.steps,
+                        (is_cut ? 2.0f * (float)shape : 0.0f) + (hit.inside ? 1.0f : 0.0f));
         hits += hit.cone != SDV_NONE;
         *cut += is_cut;
         wrong += memcmp(&p, &q, sizeof p) != 0 || memcmp(&n, &m, sizeof n) != 0 ||
@@ -312,12 +330,16 @@ static void with_shapes(void **state) {
         render_result results[2];
         scene_make(&s, &tree);
         carving_make(&c, count);
-        assert_int_equal(sdv_object_shapes(NULL, &c.shapes, NULL, &tree.object), LAO_OK);
+        s.vessel.near_miss = (float)(count % 3);
+        const float colors[3 * SHAPES] = {-1, 0, 0, 0.9f, 0.5f, 0.1f, -1, 0, 0,
+                                          0,  1, 0, 0,    0,    0,    -1, 0, 0};
+        assert_int_equal(sdv_object_shapes(NULL, &c.shapes, colors, &tree.object), LAO_OK);
+        s.vessel.field_shadow = count > 2 ? 1.0f : 0.0f;
         for (int i = 0; i < 2; i++) {
             uint32_t cut = 0;
             render_need(&devices[i]);
             render_draw(&devices[i], &s.shot, &results[i]);
-            assert_in_range(check_carved(&tree, &c, &results[i], &cut), 200, WIDTH * HEIGHT);
+            assert_in_range(check_carved(&s, &tree, &c, &results[i], &cut), 200, WIDTH * HEIGHT);
             assert_in_range(cut, 10, WIDTH * HEIGHT);
         }
         same_image("zbuffer", &results[0], &results[1]);
