@@ -41,6 +41,7 @@ void stage_close(view *v) {
     v->open = false;
     document_close(v->doc);
     v->doc = NULL;
+    memset(v->drawn, 0, sizeof v->drawn);
     v->moving_view.id = 0;
     v->picked_lines.id = 0;
     memset(&v->picked, 0, sizeof v->picked);
@@ -270,17 +271,18 @@ void stage_draw(view *v) {
     shot.height = (uint32_t)fmax(1, round(v->picture.height * scale));
     v->dirty = false;
     bool ok = render(v, &shot, small);
+    int *drawn = v->drawn[small ? SLOT_MOVING : SLOT_REST];
+    drawn[0] = ok ? (int)shot.width : 0;
+    drawn[1] = ok ? (int)shot.height : 0;
     v->frames++;
     trace(v, "frame %u %ux%u %s", v->frames, shot.width, shot.height, ok ? "ok" : "failed");
 }
 
 void stage_show(view *v) {
-    bool small = v->steady.on && v->steady.moving;
-    double scale = small ? (double)v->steady.scale : 1;
-    window_rect from = {0, 0, (int)fmax(1, round(v->picture.width * scale)),
-                        (int)fmax(1, round(v->picture.height * scale))};
-    if (v->open && v->frames && v->picture.width > 0 && v->picture.height > 0)
-        v->window.backend->show(&v->window, small ? SLOT_MOVING : SLOT_REST, from, v->picture);
+    int slot = v->steady.on && v->steady.moving ? SLOT_MOVING : SLOT_REST;
+    window_rect from = {0, 0, v->drawn[slot][0], v->drawn[slot][1]};
+    if (v->open && from.width > 0 && v->picture.width > 0 && v->picture.height > 0)
+        v->window.backend->show(&v->window, slot, from, v->picture);
 }
 
 void stage_changed(view *v, bool reach) {

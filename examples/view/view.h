@@ -10,7 +10,7 @@
 #include "ui.h"
 #include "window.h"
 
-enum { BOOKMARKS = 9, PATH_SIZE = 1024 };
+enum { BOOKMARKS = 8, PATH_SIZE = 1024 };
 
 /* How a picture in the window is made while it moves. */
 typedef struct steady {
@@ -60,10 +60,11 @@ typedef struct view {
     cli_shot shot, fitted; /* fitted: as the document was opened */
     float bounds[2][3];    /* mm about the scene's origin */
 
-    window_rect picture; /* where in the window; px */
-    bool dirty;          /* the canvas is older than what it shows */
-    bool unfitted;       /* the camera has not been fitted into the window */
-    int awake;           /* frames of the user interface still to be drawn */
+    window_rect picture;         /* where in the window; px */
+    bool dirty;                  /* the canvas is older than what it shows */
+    int drawn[SLOT_CANVASES][2]; /* sizes of what the canvases hold; 0: nothing */
+    bool unfitted;               /* the camera has not been fitted into the window */
+    int awake;                   /* frames of the user interface still to be drawn */
     bool ground, axes, turntable, panels, quit;
     double frame_ms;
     uint32_t frames;

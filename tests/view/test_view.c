@@ -102,6 +102,7 @@ static void turns_and_resizes(desktop *d) {
     fill_window(d);
     user_types(d, "h");
     assert_false(viewer_said(d, "error"));
+    assert_false(viewer_said(d, "warning vk"));
 }
 
 /* ---- pictures ------------------------------------------------------------------------------ */
@@ -298,14 +299,18 @@ static void shows_lines(void **state) {
 /* ---- all of it ----------------------------------------------------------------------------- */
 
 static int set_up(void **state) {
-    char folder[] = "view_XXXXXX";
+    char folder[] = "view_XXXXXX", cache[1024];
     fixture *f = *state;
     f->desktop = desktop_start();
     if (!f->desktop) {
         print_error("Xvfb cannot be started; ./run setup installs it\n");
         return -1;
     }
-    return mkdtemp(folder) && chdir(folder) == 0 ? 0 : -1;
+    if (!mkdtemp(folder) || chdir(folder) != 0 || !getcwd(cache, sizeof cache))
+        return -1;
+    setenv("MESA_SHADER_CACHE_DISABLE", "false", 1); /* of this run alone */
+    setenv("MESA_SHADER_CACHE_DIR", cache, 1);
+    return 0;
 }
 
 static int clean_up(void **state) {
