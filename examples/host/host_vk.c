@@ -525,25 +525,24 @@ static void full_barrier(VkCommandBuffer commands, const host_vk_image *image, V
                          VK_PIPELINE_STAGE_ALL_COMMANDS_BIT, 0, 0, NULL, 0, NULL, 1, &barrier);
 }
 
-/* Copies the image, which is in `layout` and stays so, into the buffer, or the other way round;
- * then it had no content worth keeping. */
+/* Between the image and the buffer. */
 static bool copy(host_vk *host, const host_vk_image *image, VkImageLayout layout, VkBuffer buffer,
-                 bool into) {
+                 bool write) {
+    VkImageLayout here =
+        write ? VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL : VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL;
     VkCommandBuffer commands = host_vk_begin(host);
-    VkImageLayout meanwhile =
-        into ? VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL : VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL;
     if (!commands)
         return false;
     const VkBufferImageCopy region = {
         .imageSubresource = {image->aspect, 0, 0, 1},
         .imageExtent = {image->width, image->height, 1},
     };
-    full_barrier(commands, image, into ? VK_IMAGE_LAYOUT_UNDEFINED : layout, meanwhile);
-    if (into)
-        vkCmdCopyBufferToImage(commands, buffer, image->image, meanwhile, 1, &region);
+    full_barrier(commands, image, write ? VK_IMAGE_LAYOUT_UNDEFINED : layout, here);
+    if (write)
+        vkCmdCopyBufferToImage(commands, buffer, image->image, here, 1, &region);
     else
-        vkCmdCopyImageToBuffer(commands, image->image, meanwhile, buffer, 1, &region);
-    full_barrier(commands, image, meanwhile, layout);
+        vkCmdCopyImageToBuffer(commands, image->image, here, buffer, 1, &region);
+    full_barrier(commands, image, here, layout);
     const VkMemoryBarrier to_host = {
         .sType = VK_STRUCTURE_TYPE_MEMORY_BARRIER,
         .srcAccessMask = VK_ACCESS_TRANSFER_WRITE_BIT,
@@ -554,55 +553,47 @@ static bool copy(host_vk *host, const host_vk_image *image, VkImageLayout layout
     return host_vk_submit_and_wait(host, commands);
 }
 
-/* A buffer in memory that is mapped. */
-typedef struct staging {
-    VkBuffer buffer;
-    VkDeviceMemory memory;
-    void *mapped;
-} staging;
-
-static bool make_staging(host_vk *host, size_t size, staging *out) {
+/* To `out`, or from `in`. */
+static bool transfer(host_vk *host, const host_vk_image *image, VkImageLayout layout, void *out,
+                     const void *in) {
+    bool write = in != NULL;
+    size_t size = host_vk_texel_size(image->format) * image->width * image->height;
+    if (size == 0)
+        return false;
     const VkBufferCreateInfo info = {
         .sType = VK_STRUCTURE_TYPE_BUFFER_CREATE_INFO,
         .size = size,
-        .usage = VK_BUFFER_USAGE_TRANSFER_DST_BIT | VK_BUFFER_USAGE_TRANSFER_SRC_BIT,
+        .usage = write ? VK_BUFFER_USAGE_TRANSFER_SRC_BIT : VK_BUFFER_USAGE_TRANSFER_DST_BIT,
     };
-    VkMemoryRequirements needs;
-    memset(out, 0, sizeof *out);
-    if (size == 0 || vkCreateBuffer(host->device, &info, NULL, &out->buffer) != VK_SUCCESS)
-        return false;
-    vkGetBufferMemoryRequirements(host->device, out->buffer, &needs);
-    out->memory = allocate(
-        host, &needs, VK_MEMORY_PROPERTY_HOST_VISIBLE_BIT | VK_MEMORY_PROPERTY_HOST_COHERENT_BIT);
-    return out->memory &&
-           vkBindBufferMemory(host->device, out->buffer, out->memory, 0) == VK_SUCCESS &&
-           vkMapMemory(host->device, out->memory, 0, VK_WHOLE_SIZE, 0, &out->mapped) == VK_SUCCESS;
-}
-
-static void free_staging(host_vk *host, staging *s) {
-    vkDestroyBuffer(host->device, s->buffer, NULL);
-    vkFreeMemory(host->device, s->memory, NULL);
+    VkBuffer buffer = VK_NULL_HANDLE;
+    VkDeviceMemory memory = VK_NULL_HANDLE;
+    void *mapped = NULL;
+    bool ok = vkCreateBuffer(host->device, &info, NULL, &buffer) == VK_SUCCESS;
+    if (ok) {
+        VkMemoryRequirements needs;
+        vkGetBufferMemoryRequirements(host->device, buffer, &needs);
+        memory =
+            allocate(host, &needs,
+                     VK_MEMORY_PROPERTY_HOST_VISIBLE_BIT | VK_MEMORY_PROPERTY_HOST_COHERENT_BIT);
+        ok = memory && vkBindBufferMemory(host->device, buffer, memory, 0) == VK_SUCCESS &&
+             vkMapMemory(host->device, memory, 0, VK_WHOLE_SIZE, 0, &mapped) == VK_SUCCESS;
+    }
+    if (ok && write)
+        memcpy(mapped, in, size);
+    ok = ok && copy(host, image, layout, buffer, write);
+    if (ok && !write)
+        memcpy(out, mapped, size);
+    vkDestroyBuffer(host->device, buffer, NULL);
+    vkFreeMemory(host->device, memory, NULL);
+    return ok;
 }
 
 bool host_vk_image_read(host_vk *host, const host_vk_image *image, VkImageLayout layout,
                         void *pixels) {
-    size_t size = host_vk_texel_size(image->format) * image->width * image->height;
-    staging s;
-    bool ok = make_staging(host, size, &s) && copy(host, image, layout, s.buffer, false);
-    if (ok)
-        memcpy(pixels, s.mapped, size);
-    free_staging(host, &s);
-    return ok;
+    return transfer(host, image, layout, pixels, NULL);
 }
 
 bool host_vk_image_write(host_vk *host, const host_vk_image *image, VkImageLayout layout,
                          const void *pixels) {
-    size_t size = host_vk_texel_size(image->format) * image->width * image->height;
-    staging s;
-    bool ok = make_staging(host, size, &s);
-    if (ok)
-        memcpy(s.mapped, pixels, size);
-    ok = ok && copy(host, image, layout, s.buffer, true);
-    free_staging(host, &s);
-    return ok;
+    return transfer(host, image, layout, NULL, pixels);
 }

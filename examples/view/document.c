@@ -121,7 +121,8 @@ static bool parse(document *doc) {
     words[doc->word_count + 1] = (char[]){"view.png"};
     words[doc->word_count + 2] = NULL;
     bool ok = cli_parse(doc->command, (int)doc->word_count + 2, words, &doc->options);
-    doc->options.out = NULL; /* it was not ours to keep */
+    doc->options.out = NULL;        /* it was not ours to keep */
+    doc->options.vessel.margin = 0; /* pictures have none */
     free(words);
     return ok && (!doc->options.help || cli_fail("lineao %s --help explains the flags", doc->verb));
 }
@@ -372,10 +373,9 @@ bool document_surround(void *user, picture *p) {
 
 /* Flags of the words that the viewer says itself: how many words each takes. */
 static int words_dropped(const char *word) {
-    static const char *const names[] = {"--camera", "--size",        "--time",    "--view",
-                                        "--out",    "--save-camera", "--dump",    "--timings",
-                                        "--frames", "--fps",         "--backend", "--outline",
-                                        "-o"};
+    static const char *const names[] = {
+        "--camera",  "--size",   "--time", "--view",    "--out",     "--save-camera", "--dump",
+        "--timings", "--frames", "--fps",  "--backend", "--outline", "--margin",      "-o"};
     if (strcmp(word, "--ortho") == 0 || strcmp(word, "--backdrop") == 0)
         return 1;
     for (size_t i = 0; i < sizeof names / sizeof *names; i++) {
