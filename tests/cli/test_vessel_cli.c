@@ -330,17 +330,21 @@ static void test_cameras(void **state) {
 }
 
 static void test_looks(void **state) {
-    static const char *const looks[] = {"--style plain",
-                                        "--style ink",
-                                        "--style glow",
-                                        "--color radius",
-                                        "--color order",
-                                        "--color #804020",
-                                        "--set near_miss=exact",
-                                        "--set outline_unit=mm --silhouette 1",
-                                        "--set layout_ph=0 --set width=2",
-                                        "--set field_shadow=on",
-                                        "--subtract sphere:8,18,-1100,4 --shape-color nearest"};
+    static const char *const looks[] = {
+        "--style plain",
+        "--style ink",
+        "--style glow",
+        "--color radius",
+        "--color order",
+        "--color #804020",
+        "--set near_miss=exact",
+        "--set outline_unit=mm --silhouette 1",
+        "--set layout_ph=0 --set width=2",
+        "--set field_shadow=on",
+        "--subtract sphere:8,18,-1100,4 --shape-color nearest",
+        "--union ellipsoid:0,10,-1100,9,14,9 --subtract "
+        "sphere:0,10,-1090,9 --union tree --shape-color #804020",
+        "--layout-weight near --target 0,0,-1100,1 --layout n.json"};
     (void)state;
     for (size_t i = 0; i < sizeof looks / sizeof *looks; i++)
         expect_ok(RUN("vessel " Y "-o look.png %s", looks[i]));
@@ -544,6 +548,9 @@ static void test_faults(void **state) {
         {"vessel none.swc -o a.png", "none.swc", 1},
         {"vessel cam.json -o a.png", "cam.json", 1},
         {"vessel y.swc --subtract sphere:1,2 --unit mm -o a.png", "shape", 1},
+        {"vessel y.swc --subtract tree --unit mm -o a.png", "tree", 1},
+        {"vessel y.swc --union ellipsoid:0,0,0,1,0,1 --unit mm -o a.png", "shape", 1},
+        {"vessel y.swc --layout-weight near --unit mm -o a.png", "--target", 1},
         {"vessel y.swc --subtract nothing.stl --unit mm -o a.png", "nothing.stl", 1},
         {"vessel y.swc --path 1,2 --unit mm --layout l.json", "X,Y,Z", 1},
         {"vessel y.swc --color wss --unit mm -o a.png", "wss", 1},

@@ -231,6 +231,11 @@ static void near_misses_of_shapes(void **state) {
         assert_int_equal(hit.cone, SDV_NONE);
         assert_near(hit.d_min, 0.5, 0.02); /* the vessel */
         assert_near(hit.t_min, 40, 0.6);
+        for (double x = 2.1; x < 4.9; x += 0.05) { /* wherever the samples are */
+            ray.origin = v3(x, 10, 37.3);
+            sdv_trace_shapes(&g, &shapes, &ray, &hit, NULL);
+            assert_near(hit.d_min, x - 2, 0.004 * (x - 2));
+        }
         ray.origin = v3(10.2f, 10, 40); /* the ball, whose middle is 3.8 mm beside */
         sdv_trace_shapes(&g, &shapes, &ray, &hit, NULL);
         assert_int_equal(hit.cone, SDV_NONE);
