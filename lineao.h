@@ -297,7 +297,7 @@ typedef enum lao_depth_test {
                          not */
 } lao_depth_test;
 
-#define LAO_MAX_BUFFERS 16 /* of all modules of a context */
+#define LAO_MAX_BUFFERS 24 /* of all modules of a context */
 #define LAO_MAX_READS 28
 #define LAO_MAX_WRITES 6
 #define LAO_MAX_CONSTANTS 12

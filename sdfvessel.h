@@ -78,6 +78,8 @@ extern "C" {
     X(GRID_TREE, LAO_ERROR_INVALID_ARGUMENT, "the grid was built from another tree")               \
     X(SHAPES, LAO_ERROR_INVALID_ARGUMENT,                                                          \
       "a tree takes at most 64 shapes, of finite numbers, whose samples exist")                    \
+    X(MESH, LAO_ERROR_INVALID_ARGUMENT,                                                            \
+      "a mesh needs 1 to 2^24 triangles of at most 2^24 / 3 vertices that exist and are finite")   \
     X(RADIUS_MISSING, LAO_OK,                                                                      \
       "nodes have no radius (negative, no number or beyond 1e9 mm): 0 is taken")                   \
     X(RADIUS_ZERO, LAO_OK, "nodes have radius 0")                                                  \
@@ -496,8 +498,10 @@ SDV_API lao_result sdv_pull_push(const sdv_host *host, const sdv_pull_push_desc 
     X(surface_shininess, INT, 1, 1000, 40, 1, "", "", "Phong exponent of a surface")               \
     X(parameterization, ENUM, 0, 2, 0, 1, "", "off|background|on",                                 \
       "the surface that fills the void; and texture coordinates (u, v) for every pixel")           \
-    X(guide, ENUM, 0, 1, 0, 1, "", "contour|axis",                                                 \
-      "what u follows: the normals of contours, or the axes of vessels")                           \
+    X(guide, ENUM, 0, 1, 0, 1, "", "contour|own",                                                  \
+      "what u follows: the normals of contours, or the surface's own directions: axes of "         \
+      "vessels, "                                                                                  \
+      "those that came with a mesh")                                                               \
     X(guide_threshold, FLOAT, 0, 1, 0.2f, 0, "", "",                                               \
       "step of depth that is a contour, as part of the scene's diameter (t of L19)")               \
     X(ssp_period, FLOAT, 0.001f, 1000, 4, 0, "mm", "", "period of u and v on the surface")         \
@@ -505,12 +509,16 @@ SDV_API lao_result sdv_pull_push(const sdv_host *host, const sdv_pull_push_desc 
     X(ssp_recycle, INT, -1, 15, -1, 0, "", "",                                                     \
       "coarsest level that a frame renews (l_p of L19); -1: 2^level <= period / 16 pixels")        \
     X(ssp_converge, BOOL, 0, 1, 0, 0, "", "", "optimise on where nothing changes")                 \
-    X(style, ENUM, 0, 5, 0, 1, "", "plain|stipple|hatch|crosshatch|layered|shadow",                \
+    X(style, ENUM, 0, 6, 0, 1, "", "plain|stipple|hatch|crosshatch|layered|shadow|pattern",        \
       "ink instead of shades (shadow: of depth shadows), where the parameterization is on")        \
     X(void_style, ENUM, 0, 3, 0, 1, "", "plain|chromadepth|stipple|hatch",                         \
       "what is drawn behind vessels, where the parameterization is on (chromadepth: or "           \
       "background)")                                                                               \
+    X(void_exponent, INT, 1, 1000, 25, 1, "", "",                                                  \
+      "how little the void's depth takes over from afar (k of L19)")                               \
     X(isolines, INT, 0, 1000, 30, 0, "", "", "lines of depth of the chromadepth; 0: none")         \
+    X(ink_step, FLOAT, 0.001f, 1, 0.1f, 0, "", "",                                                 \
+      "how much of what a new solution changes of a place's ink shows in a frame; 1: all at once") \
     X(mark_style, ENUM, 0, 2, 0, 1, "", "stipple|hatch|crosshatch",                                \
       "pattern of marked vessels (colours of alpha below 1/2), where the parameterization is on")  \
     X(mark_darkness, FLOAT, 0, 1, 0.35f, 0, "", "", "how much of a marked surface is ink")         \
@@ -543,6 +551,12 @@ typedef enum sdv_setting {
 } sdv_setting;
 #define SDV_SET(name) ((uint64_t)1 << SDV_SETTING_ID_##name)
 
+/* A camera for a picture that has `margin` more pixels on each side of width x height, in whose
+   middle is what `camera` shows: surfaces have their texture coordinates before they come into view
+   (L19 6). The host draws the larger picture and shows its middle. Thread: any. */
+SDV_API void sdv_camera_margin(const lao_camera *camera, uint32_t width, uint32_t height,
+                               uint32_t margin, lao_camera *wider);
+
 /* Passes, images and settings that draw trees among a scene's lines. Static. Thread: any. */
 SDV_API const lao_module *sdv_module(void);
 
@@ -550,12 +564,27 @@ SDV_API const lao_module *sdv_module(void);
    must not move, and both must live until lao_object_create or _update returns. */
 typedef struct sdv_object {
     lao_object_desc desc;
-    lao_object_buffer buffers[7];
+    lao_object_buffer buffers[8];
     lao_v4 box[2];
     lao_v4 shapes[1 + 4 * SDV_MOST_SHAPES];
-    uint8_t *colors; /* private */
+    float *pattern; /* private, as what follows */
+    void *memory;
+    size_t size;
     lao_allocator allocator;
 } sdv_object;
+
+/* A mesh whose faces are drawn with ink: through the same passes, with position, normal and colour
+   of its nearest face in place of what a tree's rays hit (L19 3.4). No near misses, no field. */
+typedef struct sdv_mesh_desc {
+    uint32_t vertex_count, triangle_count;
+    const float *positions;    /* 3 per vertex, mm */
+    const float *normals;      /* 3 per vertex */
+    const uint32_t *triangles; /* 3 per triangle, any winding: both sides are seen */
+    const float *directions;   /* (Optional) 3 per vertex, of either sign: what u follows with
+                                  guide=own, the surer the longer, up to length 1; 0: nothing there.
+                                  vsf_curvatures of vesselsurface.h makes those of curvature */
+    const uint8_t *colors;     /* (Optional) RGBA per vertex, display values; NULL: paper white */
+} sdv_mesh_desc;
 
 /* Describes a grid for lao_object_create. `colors`: (Optional) 8 bytes a cone: RGBA at its first
    and at its second end, display values; where the alpha between them is below 1/2 the vessel is
@@ -569,6 +598,24 @@ SDV_API lao_result sdv_object_make(const sdv_host *host, const sdv_grid *grid,
    referred to. Fails with NULL_ARGUMENT, SHAPES. */
 SDV_API lao_result sdv_object_shapes(const sdv_host *host, const sdv_shapes *shapes,
                                      const float *colors, sdv_object *object);
+/* Describes a mesh for lao_object_create, with copies of all it needs. Free with sdv_object_free.
+   Fails with NULL_ARGUMENT, MESH, MEMORY. */
+SDV_API lao_result sdv_object_mesh(const sdv_host *host, const sdv_mesh_desc *desc,
+                                   sdv_object *object);
+/* Describes a surface that the host has drawn itself. Each frame names three images of its own
+   (lao_frame.imports; as large as the view, `supersampling` 1): "vessel_position" (RGBA32F; world,
+   mm; w 0 where there is a surface, -1 elsewhere), "vessel_normal" (RGBA32F; world, unit, towards
+   the viewer) and "vessel_color" (RGBA8); with guide=own "vessel_direction" (RGBA32F; world; w: how
+   sure, 0 .. 1) too. bounds: lower and upper corner (6 floats), mm. Fails with NULL_ARGUMENT. */
+SDV_API lao_result sdv_object_drawn(const sdv_host *host, const float *bounds, sdv_object *object);
+/* Gives it a texture of ink for the style `pattern`: a picture of size x size grey values (1 ..
+   SDV_MOST_PATTERN; smaller: inked first), which lies in half a period of (u, v) and is mirrored
+   into the rest. Values are made even, so that any picture shows the right tone. Once for an
+   object, after everything else. Fails with NULL_ARGUMENT, IMAGE_SIZE, MEMORY. */
+#define SDV_MOST_PATTERN 256u
+SDV_API lao_result sdv_object_pattern(const sdv_host *host, const float *values, uint32_t size,
+                                      sdv_object *object);
+/* Fine on an all-zero one. */
 SDV_API void sdv_object_free(sdv_object *object);
 
 #ifdef __cplusplus
@@ -1568,7 +1615,6 @@ LAO_FN lao_v3 sdv_shade(lao_v3 color, lao_v3 n, lao_v3 l, float ambient, float d
 
 /* ---- the surface of the screen: vessels and what fills the void behind them (L19 3.4 with METHODS
    6.1) */
-#define SDV_BACKGROUND_EXPONENT 25     /* k */
 #define SDV_BACKGROUND_INERTIA 0.01f   /* w_B: weight of the last frame's depth */
 #define SDV_BACKGROUND_PRESENCE 0.001f /* weight of the void beside vessels in coarser levels */
 /* Whether a traced pixel shows a surface: a cone's or a cut's. */
@@ -1631,7 +1677,7 @@ LAO_FN lao_v3 sdv_sheet_normal(lao_v3 dx, lao_v3 dy, lao_v3 towards) {
 
 /* ---- guiding field: directions without a sign (L19 3.5 with METHODS 7.1) */
 #define SDV_GUIDE_CONTOUR 0
-#define SDV_GUIDE_AXIS 1
+#define SDV_GUIDE_OWN 1
 #define SDV_CONTOUR_WEIGHT 0.2f /* w_f */
 /* Gradient of depth over three rows of three pixels, bottom up: a step reads as its height, as part
    of the scene's diameter. */
@@ -1662,7 +1708,9 @@ LAO_FN lao_v4 sdv_contour_tensor(lao_v2 gradient, lao_v3 normal, float threshold
     }
     return sdv_tensor(-gradient.x / rise, -gradient.y / rise, SDV_CONTOUR_WEIGHT);
 }
-/* Of a vessel's axis (view space): certain where it is seen from the side, nothing end-on. */
+/* Of a surface's own direction (view space): certain where it is seen from the side, nothing
+ * end-on.
+ */
 LAO_FN lao_v4 sdv_axis_tensor(lao_v3 axis) {
     lao_v3 a = lao_v3_unit(axis, lao_v3_make(0.0f, 0.0f, 0.0f));
     LAO_EXACT float across2 = a.x * a.x + a.y * a.y;
@@ -1817,23 +1865,28 @@ LAO_FN sdv_phases sdv_phases_hear(sdv_phases s, lao_v3 p, lao_v3 along, lao_v3 a
 
 /* ---- frame coherence (L19 3.7 with METHODS 7.4) */
 /* Coarsest level that a frame renews: the setting, or (negative) the largest with 2^level <= 1/16
-   period, at least 1. period: pixels. At rest a solution only goes on: level 0. */
-LAO_FN float sdv_recycle_level(float setting, float period, bool rests) {
-    if (rests) {
-        return 0.0f;
+   period, at least 1. period: pixels. busy 0: a solution at rest only goes on, by level 0. */
+LAO_FN float sdv_recycle_level(float setting, float period, float busy) {
+    LAO_EXACT float rule = 1.0f;
+    LAO_EXACT float next = 63.995f;
+    for (lao_int i = 0; i < 14; i++) {
+        rule = rule + (period >= next ? 1.0f : 0.0f);
+        next = next * 2.0f;
     }
-    if (setting > -0.5f) {
-        return setting;
-    }
-    LAO_EXACT float level = lao_floor(lao_log2(lao_max(period / 16.0f, 2.0f)) + 1.0e-4f);
-    return level;
+    float level = setting > -0.5f ? setting : rule;
+    return busy > 0.0f ? level : 0.0f;
 }
-LAO_FN bool sdv_same_column(lao_v4 a, lao_v4 b) {
-    return a.x == b.x && a.y == b.y && a.z == b.z && a.w == b.w;
+/* 0 where two cameras are the same. A sum, and no comparisons one by one: lavapipe makes a program
+   for each value of a uniform that a branch asks for, which would be several a frame. */
+LAO_FN float sdv_apart_column(lao_v4 a, lao_v4 b) {
+    LAO_EXACT float r =
+        lao_abs(a.x - b.x) + lao_abs(a.y - b.y) + lao_abs(a.z - b.z) + lao_abs(a.w - b.w);
+    return r;
 }
-LAO_FN bool sdv_same_matrix(lao_m4 a, lao_m4 b) {
-    return sdv_same_column(a.x, b.x) && sdv_same_column(a.y, b.y) && sdv_same_column(a.z, b.z) &&
-           sdv_same_column(a.w, b.w);
+LAO_FN float sdv_apart(lao_m4 a, lao_m4 b) {
+    LAO_EXACT float r = sdv_apart_column(a.x, b.x) + sdv_apart_column(a.y, b.y) +
+                        sdv_apart_column(a.z, b.z) + sdv_apart_column(a.w, b.w);
+    return r;
 }
 /* The pixel of an image that shows p, and 1; 0: none does. */
 LAO_FN lao_v3 sdv_pixel_of(lao_m4 view, lao_m4 projection, lao_v3 p, float width, float height) {
@@ -1901,6 +1954,7 @@ LAO_FN bool sdv_phase_stays(lao_v4 now, lao_v4 before) {
 #define SDV_STYLE_CROSSHATCH 3
 #define SDV_STYLE_LAYERED 4
 #define SDV_STYLE_SHADOW 5 /* shaded, depth shadows hatched */
+#define SDV_STYLE_PATTERN 6
 #define SDV_VOID_PLAIN 0
 #define SDV_VOID_CHROMADEPTH 1
 #define SDV_VOID_STIPPLE 2
@@ -1978,6 +2032,52 @@ LAO_FN float sdv_style_ink(lao_int style, float u, float v, float darkness, floa
         return sdv_crosshatch_ink(a, b, dark, wide_u, wide_v);
     }
     return sdv_lines_ink(b, dark, wide_v);
+}
+/* Sample i of SDV_PATTERN_SAMPLES^2 over a pixel at (a, b), periods: which of n x n thresholds
+   holds there. The pattern lies in half a period and is mirrored, as (u, v) and (-u, -v) are one
+   place. */
+#define SDV_PATTERN_SAMPLES 4
+LAO_FN lao_int sdv_pattern_axis(float a, float wide, lao_int i, lao_int n) {
+    LAO_EXACT float x = a + wide * ((LAO_F(i) + 0.5f) / LAO_F(SDV_PATTERN_SAMPLES) - 0.5f);
+    LAO_EXACT float off = lao_abs(x - lao_floor(x + 0.5f)) * 2.0f * LAO_F(n);
+    return LAO_I(lao_min(off, LAO_F(n) - 0.5f));
+}
+LAO_FN lao_int sdv_pattern_at(lao_v2 phase, float wide_u, float wide_v, lao_int i, lao_int n) {
+    LAO_EXACT float a = phase.x / LAO_TURN;
+    LAO_EXACT float b = phase.y / LAO_TURN;
+    return sdv_pattern_axis(b, wide_v, i / SDV_PATTERN_SAMPLES, n) * n +
+           sdv_pattern_axis(a, wide_u, i % SDV_PATTERN_SAMPLES, n);
+}
+/* inked: of the samples; what is too small for a pixel keeps its tone. */
+LAO_FN float sdv_pattern_ink(float inked, float dark, float wide_u, float wide_v) {
+    LAO_EXACT float share = inked / LAO_F(SDV_PATTERN_SAMPLES * SDV_PATTERN_SAMPLES);
+    LAO_EXACT float blur = lao_clamp01(2.5f * (wide_u + wide_v) - 0.75f);
+    LAO_EXACT float r = share + blur * (dark - share);
+    return r;
+}
+/* White that a style's ink and a depth shadow's lines, which go the other way, leave of a pixel.
+   pattern: ink of SDV_STYLE_PATTERN. */
+LAO_FN float sdv_style_paper(lao_int style, lao_v2 phase, float darkness, float shadow,
+                             float wide_u, float wide_v, float pattern) {
+    LAO_EXACT float lines = sdv_lines_ink(phase.x / LAO_TURN, lao_clamp01(shadow), wide_u);
+    LAO_EXACT float left = 1.0f - lines;
+    if (style == SDV_STYLE_PLAIN || style == SDV_STYLE_SHADOW) {
+        return left;
+    }
+    float ink = pattern;
+    if (style != SDV_STYLE_PATTERN) {
+        ink = sdv_style_ink(style, phase.x, phase.y, darkness, wide_u, wide_v);
+    }
+    LAO_EXACT float r = left * (1.0f - ink);
+    return r;
+}
+/* Births and deaths of strokes and dots (which L19 5 leaves open). A place shows what its phases
+   say, and a rest of what it showed before these changed; each frame lessens the rest by `step` of
+   it. before: white by the recalled phases and the last frame's rest; now: by the new phases. As
+   both move with the surface, only what a solution changed fades. */
+LAO_FN float sdv_ink_rest(float before, float now, float step) {
+    LAO_EXACT float r = (lao_clamp01(before) - now) * (1.0f - step);
+    return lao_abs(r) < 0.004f ? 0.0f : r; /* below what a display shows */
 }
 /* What a head light leaves of white, without a highlight. */
 LAO_FN float sdv_style_tone(float facing, float ambient, float diffuse, float light) {
@@ -4952,6 +5052,7 @@ SDV_API lao_result sdv_pull_push(const sdv_host *host, const sdv_pull_push_desc 
 // clang-format off
 #define SDV__WRITE(image) {image, LAO_LEVEL_SAME, 0, LAO_PHASE_THIS, LAO_LOAD_DISCARD}
 #define SDV__READ(image) {image, LAO_LEVEL_SAME, 0, LAO_PHASE_THIS, LAO_LOAD_DISCARD}
+#define SDV__CLEAR(image) {image, LAO_LEVEL_SAME, 0, LAO_PHASE_THIS, LAO_LOAD_CLEAR}
 #define SDV__KEEP(image) {image, LAO_LEVEL_SAME, 0, LAO_PHASE_THIS, LAO_LOAD_KEEP}
 #define SDV__OTHER(image) {image, LAO_LEVEL_SAME, 0, LAO_PHASE_OTHER, LAO_LOAD_DISCARD}
 #define SDV__BEFORE(image) {image, LAO_LEVEL_SAME, 0, LAO_PHASE_PREVIOUS, LAO_LOAD_DISCARD}
@@ -4960,21 +5061,30 @@ SDV_API lao_result sdv_pull_push(const sdv_host *host, const sdv_pull_push_desc 
 #define SDV__TOP(image) {image, LAO_LEVEL_INDEX, 31, LAO_PHASE_THIS, LAO_LOAD_DISCARD}
 #define SDV__BACKGROUND {"parameterization", '>', 0}
 #define SDV__PARAMETERIZED {"parameterization", '>', 1}
-#define SDV__WITH_BACKGROUND {{"#vessel_cells", '>', 0}, SDV__BACKGROUND}
-#define SDV__WITH_PHASES {{"#vessel_cells", '>', 0}, SDV__PARAMETERIZED}
-#define SDV__WITH_TREE {{"#vessel_cells", '>', 0}, {"#vessel_shapes", '=', 0}}
-#define SDV__WITH_SHAPES {{"#vessel_cells", '>', 0}, {"#vessel_shapes", '>', 0}}
+#define SDV__WITH_BACKGROUND {{"#vessel_box", '>', 0}, SDV__BACKGROUND}
+#define SDV__WITH_PHASES {{"#vessel_box", '>', 0}, SDV__PARAMETERIZED}
+/* a tree, one with shapes, and what is only seen: a mesh, a surface that the host drew */
+#define SDV__TREE {"#vessel_cells", '>', 0}, {"#vessel_shapes", '=', 0}
+#define SDV__SHAPES {"#vessel_cells", '>', 0}, {"#vessel_shapes", '>', 0}
+#define SDV__SEEN {"#vessel_box", '>', 0}, {"#vessel_cells", '=', 0}
+#define SDV__WITH_TREE {SDV__TREE}
+#define SDV__WITH_SHAPES {SDV__SHAPES}
 
 static const lao_buffer_row sdv__buffers[] = {
     {"vessel_box", LAO_FORMAT_RGBA32F}, {"vessel_cells", LAO_FORMAT_RGBA32F}, {"vessel_ids", LAO_FORMAT_R32F},
     {"vessel_cones", LAO_FORMAT_RGBA32F}, {"vessel_colors", LAO_FORMAT_RGBA8},
-    {"vessel_shapes", LAO_FORMAT_RGBA32F}, {"vessel_fields", LAO_FORMAT_R32F}
+    {"vessel_shapes", LAO_FORMAT_RGBA32F}, {"vessel_fields", LAO_FORMAT_R32F},
+    {"vessel_vertices", LAO_FORMAT_RGBA32F}, {"vessel_triangles", LAO_FORMAT_RGBA32F},
+    {"vessel_pattern", LAO_FORMAT_R32F}
 };
 
 static const lao_image_row sdv__images[] = {
     {"vessel_position", LAO_FORMAT_RGBA32F, LAO_SIZE_FULL, 0, 0, NULL, 0, LAO_ENCODING_PLAIN, {0, 0, 0, -1}, {NULL, 0, 0}, {"position.X", "position.Y", "position.Z", "segment.V"}},
     {"vessel_normal",   LAO_FORMAT_RGBA32F, LAO_SIZE_FULL, 0, 0, NULL, 0, LAO_ENCODING_PLAIN, {0, 0, 0, 0},  {NULL, 0, 0}, {"normal.X", "normal.Y", "normal.Z", "dmin.V"}},
     {"vessel_ray",      LAO_FORMAT_RGBA32F, LAO_SIZE_FULL, 0, 0, NULL, 0, LAO_ENCODING_PLAIN, {0, 0, 0, 0},  {NULL, 0, 0}, {NULL, NULL, NULL, NULL}},
+    {"vessel_color",    LAO_FORMAT_RGBA8,   LAO_SIZE_FULL, 0, 0, NULL, 0, LAO_ENCODING_PLAIN, {0, 0, 0, 0},  {NULL, 0, 0}, {NULL, NULL, NULL, NULL}},
+    {"vessel_direction", LAO_FORMAT_RGBA32F, LAO_SIZE_FULL, 0, 0, NULL, 0, LAO_ENCODING_PLAIN, {0, 0, 0, 0}, {"guide", '>', 0}, {NULL, NULL, NULL, NULL}},
+    {"vessel_z",        LAO_FORMAT_D32F,    LAO_SIZE_FULL, 0, 0, NULL, 0, LAO_ENCODING_PLAIN, {1, 0, 0, 0},  {NULL, 0, 0}, {NULL, NULL, NULL, NULL}},
     /* where there is a parameterization: of pyramids, levels down to one texel; what each holds stands in its shader */
     {"vessel_depth", LAO_FORMAT_RGBA32F, LAO_SIZE_FULL, 0, 0, "*", 0, LAO_ENCODING_PLAIN, {0, 0, 0, 0}, SDV__BACKGROUND, {NULL, NULL, NULL, NULL}},
     {"vessel_filled", LAO_FORMAT_RGBA32F, LAO_SIZE_FULL, 0, 0, "*", 0, LAO_ENCODING_PLAIN, {0, 0, 0, 0}, SDV__BACKGROUND, {NULL, NULL, NULL, NULL}},
@@ -4988,7 +5098,8 @@ static const lao_image_row sdv__images[] = {
     {"vessel_across", LAO_FORMAT_RGBA32F, LAO_SIZE_FULL, 0, 0, "*", 0, LAO_ENCODING_PLAIN, {0, 0, 0, 0}, SDV__PARAMETERIZED, {NULL, NULL, NULL, NULL}},
     {"vessel_recalled", LAO_FORMAT_RGBA32F, LAO_SIZE_FULL, 0, 0, "*", 0, LAO_ENCODING_PLAIN, {0, 0, 0, 0}, SDV__PARAMETERIZED, {NULL, NULL, NULL, NULL}},
     {"vessel_phase", LAO_FORMAT_RGBA32F, LAO_SIZE_FULL, 0, 0, "*", 0, LAO_ENCODING_PLAIN, {0, 0, 0, 0}, SDV__PARAMETERIZED, {NULL, NULL, NULL, NULL}},
-    {"vessel_uv", LAO_FORMAT_RGBA32F, LAO_SIZE_FULL, 0, 0, NULL, LAO_IMAGE_HISTORY, LAO_ENCODING_PLAIN, {0, 0, 0, 0}, SDV__PARAMETERIZED, {"uv.U", "uv.V", "guide.X", "guide.Y"}}
+    {"vessel_uv", LAO_FORMAT_RGBA32F, LAO_SIZE_FULL, 0, 0, NULL, LAO_IMAGE_HISTORY, LAO_ENCODING_PLAIN, {0, 0, 0, 0}, SDV__PARAMETERIZED, {"uv.U", "uv.V", "guide.X", "guide.Y"}},
+    {"vessel_ink", LAO_FORMAT_RGBA32F, LAO_SIZE_FULL, 0, 0, NULL, LAO_IMAGE_HISTORY, LAO_ENCODING_PLAIN, {1, 0, 0, 0}, SDV__PARAMETERIZED, {NULL, NULL, NULL, NULL}}
 };
 
 static const lao_pass_row sdv__passes[] = {
@@ -4998,6 +5109,9 @@ static const lao_pass_row sdv__passes[] = {
     {"vessel_carve", LAO_PASS_FULLSCREEN, "vessel_carve", 0, LAO_STAGE_DRAW, LAO_SCOPE_PER_SET, LAO_REPEAT_NONE, NULL, LAO_BLEND_NONE, LAO_DEPTH_NONE, LAO_CULL_NONE, SDV__WITH_SHAPES,
      {SDV__WRITE("vessel_position"), SDV__WRITE("vessel_normal"), SDV__WRITE("vessel_ray")},
      {SDV__READ("#vessel_box"), SDV__READ("#vessel_cells"), SDV__READ("#vessel_ids"), SDV__READ("#vessel_cones"), SDV__READ("#vessel_shapes"), SDV__READ("#vessel_fields")}},
+    {"vessel_mesh", LAO_PASS_DRAW_MESH, "vessel_mesh", 0, LAO_STAGE_DRAW, LAO_SCOPE_PER_SET, LAO_REPEAT_NONE, NULL, LAO_BLEND_NONE, LAO_DEPTH_NEARER, LAO_CULL_NONE, {{"#vessel_triangles", '>', 0}},
+     {SDV__CLEAR("vessel_position"), SDV__CLEAR("vessel_normal"), SDV__CLEAR("vessel_color"), SDV__CLEAR("vessel_direction"), SDV__CLEAR("vessel_z")},
+     {SDV__READ("#vessel_vertices"), SDV__READ("#vessel_triangles"), SDV__READ("#vessel_colors")}},
     /* the void: depth pulled up and pushed down, then a place and a normal for every pixel (L19 3.4) */
     {"vessel_depth", LAO_PASS_FULLSCREEN, "vessel_depth", 0, LAO_STAGE_SHADE, LAO_SCOPE_PER_SET, LAO_REPEAT_NONE, NULL, LAO_BLEND_NONE, LAO_DEPTH_NONE, LAO_CULL_NONE, SDV__WITH_BACKGROUND,
      {SDV__WRITE("vessel_depth")},
@@ -5011,9 +5125,12 @@ static const lao_pass_row sdv__passes[] = {
     {"vessel_fill", LAO_PASS_FULLSCREEN, "vessel_fill", 0, LAO_STAGE_SHADE, LAO_SCOPE_PER_SET, LAO_REPEAT_LEVELS_DOWN, NULL, LAO_BLEND_NONE, LAO_DEPTH_NONE, LAO_CULL_NONE, SDV__WITH_BACKGROUND,
      {SDV__WRITE("vessel_filled")},
      {SDV__READ("vessel_depth"), SDV__COARSER("vessel_filled")}},
-    {"vessel_surface", LAO_PASS_FULLSCREEN, "vessel_surface", 0, LAO_STAGE_SHADE, LAO_SCOPE_PER_SET, LAO_REPEAT_NONE, NULL, LAO_BLEND_NONE, LAO_DEPTH_NONE, LAO_CULL_NONE, SDV__WITH_BACKGROUND,
+    {"vessel_surface", LAO_PASS_FULLSCREEN, "vessel_surface", 0, LAO_STAGE_SHADE, LAO_SCOPE_PER_SET, LAO_REPEAT_NONE, NULL, LAO_BLEND_NONE, LAO_DEPTH_NONE, LAO_CULL_NONE, {{"#vessel_cells", '>', 0}, SDV__BACKGROUND},
      {SDV__WRITE("vessel_surface"), SDV__WRITE("vessel_bgnormal"), SDV__WRITE("vessel_place"), SDV__WRITE("vessel_facing"), SDV__WRITE("vessel_tensor")},
-     {SDV__READ("vessel_filled"), SDV__READ("vessel_depth"), SDV__READ("vessel_position"), SDV__READ("vessel_normal"), SDV__READ("#vessel_cones")}},
+     {SDV__READ("vessel_filled"), SDV__READ("vessel_depth"), SDV__READ("vessel_position"), SDV__READ("vessel_normal"), SDV__READ("#vessel_cones"), SDV__READ("vessel_normal")}},
+    {"vessel_surface_seen", LAO_PASS_FULLSCREEN, "vessel_surface", 1, LAO_STAGE_SHADE, LAO_SCOPE_PER_SET, LAO_REPEAT_NONE, NULL, LAO_BLEND_NONE, LAO_DEPTH_NONE, LAO_CULL_NONE, {SDV__SEEN, SDV__BACKGROUND},
+     {SDV__WRITE("vessel_surface"), SDV__WRITE("vessel_bgnormal"), SDV__WRITE("vessel_place"), SDV__WRITE("vessel_facing"), SDV__WRITE("vessel_tensor")},
+     {SDV__READ("vessel_filled"), SDV__READ("vessel_depth"), SDV__READ("vessel_position"), SDV__READ("vessel_normal"), SDV__READ("#vessel_cones"), SDV__READ("vessel_direction")}},
     /* the guiding field of the contours (L19 3.5) */
     {"vessel_place_up", LAO_PASS_FULLSCREEN, "vessel_gather", 0, LAO_STAGE_SHADE, LAO_SCOPE_PER_SET, LAO_REPEAT_LEVELS_UP, NULL, LAO_BLEND_NONE, LAO_DEPTH_NONE, LAO_CULL_NONE, SDV__WITH_PHASES,
      {SDV__WRITE("vessel_place"), SDV__WRITE("vessel_facing")},
@@ -5030,7 +5147,7 @@ static const lao_pass_row sdv__passes[] = {
     /* phases: the last frame's pulled up, then pushed down and optimised (L19 3.6, 3.7) */
     {"vessel_recall", LAO_PASS_FULLSCREEN, "vessel_recall", 0, LAO_STAGE_SHADE, LAO_SCOPE_PER_SET, LAO_REPEAT_NONE, NULL, LAO_BLEND_NONE, LAO_DEPTH_NONE, LAO_CULL_NONE, SDV__WITH_PHASES,
      {SDV__WRITE("vessel_recalled")},
-     {SDV__READ("vessel_surface"), SDV__READ("vessel_bgnormal"), SDV__READ("vessel_along"), SDV__READ("vessel_across"), SDV__BEFORE("vessel_surface"), SDV__BEFORE("vessel_uv")}},
+     {SDV__READ("vessel_surface"), SDV__READ("vessel_bgnormal"), SDV__READ("vessel_along"), SDV__READ("vessel_across"), SDV__BEFORE("vessel_surface"), SDV__BEFORE("vessel_uv"), SDV__BEFORE("vessel_ink")}},
     {"vessel_recall_up", LAO_PASS_FULLSCREEN, "vessel_recall_up", 0, LAO_STAGE_SHADE, LAO_SCOPE_PER_SET, LAO_REPEAT_LEVELS_UP, NULL, LAO_BLEND_NONE, LAO_DEPTH_NONE, LAO_CULL_NONE, SDV__WITH_PHASES,
      {SDV__WRITE("vessel_recalled")},
      {SDV__FINER("vessel_recalled"), SDV__FINER("vessel_place"), SDV__FINER("vessel_along"), SDV__FINER("vessel_across"), SDV__READ("vessel_place"), SDV__READ("vessel_along"), SDV__READ("vessel_across")}},
@@ -5046,18 +5163,43 @@ static const lao_pass_row sdv__passes[] = {
     {"vessel_uv", LAO_PASS_FULLSCREEN, "vessel_uv", 0, LAO_STAGE_SHADE, LAO_SCOPE_PER_SET, LAO_REPEAT_NONE, NULL, LAO_BLEND_NONE, LAO_DEPTH_NONE, LAO_CULL_NONE, SDV__WITH_PHASES,
      {SDV__WRITE("vessel_uv")},
      {SDV__READ("vessel_phase"), SDV__READ("vessel_spread"), SDV__READ("vessel_along"), SDV__READ("vessel_surface"), SDV__BEFORE("vessel_surface"), SDV__BEFORE("vessel_uv")}},
+    /* strokes and dots, where phases changed faded over */
+    {"vessel_ink", LAO_PASS_FULLSCREEN, "vessel_ink", 0, LAO_STAGE_SHADE, LAO_SCOPE_PER_SET, LAO_REPEAT_NONE, NULL, LAO_BLEND_NONE, LAO_DEPTH_NONE, LAO_CULL_NONE, {SDV__TREE, SDV__PARAMETERIZED},
+     {SDV__WRITE("vessel_ink")},
+     {SDV__READ("vessel_position"), SDV__READ("vessel_normal"), SDV__READ("vessel_ray"),
+      SDV__READ("#vessel_box"), SDV__READ("#vessel_cells"), SDV__READ("#vessel_ids"), SDV__READ("#vessel_cones"),
+      SDV__READ("#vessel_shapes"), SDV__READ("#vessel_fields"), SDV__READ("vessel_uv"), SDV__READ("vessel_surface"),
+      SDV__READ("vessel_bgnormal"), SDV__READ("vessel_along"), SDV__READ("vessel_across"), SDV__READ("vessel_recalled"), SDV__READ("#vessel_pattern"), SDV__READ("#vessel_colors")}},
+    {"vessel_ink_cut", LAO_PASS_FULLSCREEN, "vessel_ink", 1, LAO_STAGE_SHADE, LAO_SCOPE_PER_SET, LAO_REPEAT_NONE, NULL, LAO_BLEND_NONE, LAO_DEPTH_NONE, LAO_CULL_NONE, {SDV__SHAPES, SDV__PARAMETERIZED},
+     {SDV__WRITE("vessel_ink")},
+     {SDV__READ("vessel_position"), SDV__READ("vessel_normal"), SDV__READ("vessel_ray"),
+      SDV__READ("#vessel_box"), SDV__READ("#vessel_cells"), SDV__READ("#vessel_ids"), SDV__READ("#vessel_cones"),
+      SDV__READ("#vessel_shapes"), SDV__READ("#vessel_fields"), SDV__READ("vessel_uv"), SDV__READ("vessel_surface"),
+      SDV__READ("vessel_bgnormal"), SDV__READ("vessel_along"), SDV__READ("vessel_across"), SDV__READ("vessel_recalled"), SDV__READ("#vessel_pattern"), SDV__READ("#vessel_colors")}},
+    {"vessel_ink_seen", LAO_PASS_FULLSCREEN, "vessel_ink", 2, LAO_STAGE_SHADE, LAO_SCOPE_PER_SET, LAO_REPEAT_NONE, NULL, LAO_BLEND_NONE, LAO_DEPTH_NONE, LAO_CULL_NONE, {SDV__SEEN, SDV__PARAMETERIZED},
+     {SDV__WRITE("vessel_ink")},
+     {SDV__READ("vessel_position"), SDV__READ("vessel_normal"), SDV__READ("vessel_normal"),
+      SDV__READ("#vessel_box"), SDV__READ("#vessel_cells"), SDV__READ("#vessel_ids"), SDV__READ("#vessel_cones"),
+      SDV__READ("#vessel_shapes"), SDV__READ("#vessel_fields"), SDV__READ("vessel_uv"), SDV__READ("vessel_surface"),
+      SDV__READ("vessel_bgnormal"), SDV__READ("vessel_along"), SDV__READ("vessel_across"), SDV__READ("vessel_recalled"), SDV__READ("#vessel_pattern"), SDV__READ("#vessel_colors")}},
     {"vessel_shade", LAO_PASS_FULLSCREEN, "vessel_shade", 0, LAO_STAGE_SHADE, LAO_SCOPE_PER_SET, LAO_REPEAT_NONE, NULL, LAO_BLEND_NONE, LAO_DEPTH_NEARER, LAO_CULL_NONE, SDV__WITH_TREE,
      {SDV__KEEP("shaded"), SDV__KEEP("zbuffer")},
      {SDV__READ("vessel_position"), SDV__READ("vessel_normal"), SDV__READ("vessel_ray"), SDV__READ("#vessel_colors"),
       SDV__READ("#vessel_box"), SDV__READ("#vessel_cells"), SDV__READ("#vessel_ids"), SDV__READ("#vessel_cones"),
       SDV__READ("#vessel_shapes"), SDV__READ("#vessel_fields"),
-      SDV__READ("vessel_uv"), SDV__READ("vessel_surface"), SDV__READ("vessel_bgnormal"), SDV__READ("vessel_along"), SDV__READ("vessel_across")}},
+      SDV__READ("vessel_surface"), SDV__READ("vessel_bgnormal"), SDV__READ("vessel_ink"), SDV__READ("vessel_normal")}},
     {"vessel_shade_cut", LAO_PASS_FULLSCREEN, "vessel_shade", 1, LAO_STAGE_SHADE, LAO_SCOPE_PER_SET, LAO_REPEAT_NONE, NULL, LAO_BLEND_NONE, LAO_DEPTH_NEARER, LAO_CULL_NONE, SDV__WITH_SHAPES,
      {SDV__KEEP("shaded"), SDV__KEEP("zbuffer")},
      {SDV__READ("vessel_position"), SDV__READ("vessel_normal"), SDV__READ("vessel_ray"), SDV__READ("#vessel_colors"),
       SDV__READ("#vessel_box"), SDV__READ("#vessel_cells"), SDV__READ("#vessel_ids"), SDV__READ("#vessel_cones"),
       SDV__READ("#vessel_shapes"), SDV__READ("#vessel_fields"),
-      SDV__READ("vessel_uv"), SDV__READ("vessel_surface"), SDV__READ("vessel_bgnormal"), SDV__READ("vessel_along"), SDV__READ("vessel_across")}}
+      SDV__READ("vessel_surface"), SDV__READ("vessel_bgnormal"), SDV__READ("vessel_ink"), SDV__READ("vessel_normal")}},
+    {"vessel_shade_seen", LAO_PASS_FULLSCREEN, "vessel_shade", 2, LAO_STAGE_SHADE, LAO_SCOPE_PER_SET, LAO_REPEAT_NONE, NULL, LAO_BLEND_NONE, LAO_DEPTH_NEARER, LAO_CULL_NONE, {SDV__SEEN},
+     {SDV__KEEP("shaded"), SDV__KEEP("zbuffer")},
+     {SDV__READ("vessel_position"), SDV__READ("vessel_normal"), SDV__READ("vessel_normal"), SDV__READ("#vessel_colors"),
+      SDV__READ("#vessel_box"), SDV__READ("#vessel_cells"), SDV__READ("#vessel_ids"), SDV__READ("#vessel_cones"),
+      SDV__READ("#vessel_shapes"), SDV__READ("#vessel_fields"),
+      SDV__READ("vessel_surface"), SDV__READ("vessel_bgnormal"), SDV__READ("vessel_ink"), SDV__READ("vessel_color")}}
 };
 
 static const lao_setting_row sdv__settings[] = {
@@ -5077,15 +5219,32 @@ static const lao_module sdv__module = {
 };
 // clang-format on
 
+SDV_API void sdv_camera_margin(const lao_camera *camera, uint32_t width, uint32_t height,
+                               uint32_t margin, lao_camera *wider) {
+    double x = (double)width / ((double)width + 2.0 * margin);
+    double y = (double)height / ((double)height + 2.0 * margin);
+    int column;
+    *wider = *camera;
+    for (column = 0; column < 4; column++) {
+        wider->projection[4 * column] = (float)(x * (double)camera->projection[4 * column]);
+        wider->projection[4 * column + 1] = (float)(y * (double)camera->projection[4 * column + 1]);
+    }
+}
+
 SDV_API const lao_module *sdv_module(void) {
     return &sdv__module;
 }
 
-static void sdv__object_buffer(sdv_object *object, uint32_t index, const void *data,
-                               uint32_t count) {
-    object->buffers[index].name = sdv__buffers[index].name;
+/* row: of sdv__buffers */
+static void sdv__object_buffer_of(sdv_object *object, uint32_t index, uint32_t row,
+                                  const void *data, uint32_t count) {
+    object->buffers[index].name = sdv__buffers[row].name;
     object->buffers[index].data = data;
     object->buffers[index].texel_count = count;
+}
+static void sdv__object_buffer(sdv_object *object, uint32_t index, const void *data,
+                               uint32_t count) {
+    sdv__object_buffer_of(object, index, index, data, count);
 }
 
 SDV_API lao_result sdv_object_make(const sdv_host *host, const sdv_grid *grid,
@@ -5109,7 +5268,8 @@ SDV_API lao_result sdv_object_make(const sdv_host *host, const sdv_grid *grid,
     }
     memset(object, 0, sizeof *object);
     object->allocator = allocator;
-    object->colors = own;
+    object->memory = own;
+    object->size = size;
     object->box[0] = lao_v4_make(grid->origin.x, grid->origin.y, grid->origin.z, grid->cell);
     object->box[1] = lao_v4_make((float)grid->size[0], (float)grid->size[1], (float)grid->size[2],
                                  (float)grid->cone_count);
@@ -5191,11 +5351,149 @@ SDV_API lao_result sdv_object_shapes(const sdv_host *host, const sdv_shapes *sha
     return LAO_OK;
 }
 
+/* Fills the buffers of a mesh, which stand one behind the other in `memory`: three texels a vertex,
+   one a triangle, colours. 0: the mesh is none. */
+static int sdv__mesh_fill(const sdv_mesh_desc *d, lao_v4 *vertices, lao_v4 *triangles,
+                          uint8_t *colors, float bounds[2][3]) {
+    uint32_t i, k;
+    for (i = 0; i < d->vertex_count; i++) {
+        const float *p = d->positions + 3 * (size_t)i, *n = d->normals + 3 * (size_t)i;
+        const float *z = d->directions ? d->directions + 3 * (size_t)i : NULL;
+        lao_v4 *to = vertices + 3 * (size_t)i;
+        for (k = 0; k < 3; k++) {
+            if (!(fabsf(p[k]) <= 1e9f && fabsf(n[k]) <= 1e9f && (!z || fabsf(z[k]) <= 1e9f))) {
+                return 0;
+            }
+            bounds[0][k] = i ? lao_min(bounds[0][k], p[k]) : p[k];
+            bounds[1][k] = i ? lao_max(bounds[1][k], p[k]) : p[k];
+        }
+        to[0] = lao_v4_make(p[0], p[1], p[2], 1.0f);
+        to[1] = lao_v4_make(n[0], n[1], n[2], 0.0f);
+        to[2] = lao_v4_make(0.0f, 0.0f, 0.0f, 0.0f);
+        if (z) {
+            float sure = lao_sqrt(z[0] * z[0] + z[1] * z[1] + z[2] * z[2]);
+            to[2] = lao_v4_make(z[0], z[1], z[2], lao_min(sure, 1.0f));
+        }
+    }
+    for (i = 0; i < d->triangle_count; i++) {
+        const uint32_t *t = d->triangles + 3 * (size_t)i;
+        if (t[0] >= d->vertex_count || t[1] >= d->vertex_count || t[2] >= d->vertex_count) {
+            return 0;
+        }
+        triangles[i] = lao_v4_make((float)t[0], (float)t[1], (float)t[2], 0.0f);
+    }
+    for (i = 0; i < 4 * d->vertex_count; i++) {
+        colors[i] = d->colors ? d->colors[i] : 255;
+    }
+    return 1;
+}
+
+SDV_API lao_result sdv_object_drawn(const sdv_host *host, const float *bounds, sdv_object *object) {
+    if (!bounds || !object) {
+        return sdv__fail(host, SDV_LOG_NULL_ARGUMENT, "sdv_object_drawn");
+    }
+    memset(object, 0, sizeof *object);
+    object->allocator = sdv__allocator(host);
+    memcpy(object->desc.bounds, bounds, sizeof object->desc.bounds);
+    sdv__object_buffer(object, 0, object->box, 2);
+    object->desc.buffers = object->buffers;
+    object->desc.buffer_count = 1;
+    return LAO_OK;
+}
+
+SDV_API lao_result sdv_object_mesh(const sdv_host *host, const sdv_mesh_desc *desc,
+                                   sdv_object *object) {
+    lao_allocator allocator = sdv__allocator(host);
+    const uint32_t most = 1u << 24;
+    float bounds[2][3];
+    lao_v4 *memory;
+    size_t size;
+    if (!desc || !object || !desc->positions || !desc->normals || !desc->triangles) {
+        return sdv__fail(host, SDV_LOG_NULL_ARGUMENT, "sdv_object_mesh");
+    }
+    if (!desc->vertex_count || !desc->triangle_count || desc->vertex_count > most / 3 ||
+        desc->triangle_count > most) {
+        return sdv__fail(host, SDV_LOG_MESH, "%u vertices, %u triangles", desc->vertex_count,
+                         desc->triangle_count);
+    }
+    size = (3 * (size_t)desc->vertex_count + desc->triangle_count) * sizeof *memory +
+           4 * (size_t)desc->vertex_count;
+    memory = (lao_v4 *)allocator.allocate(allocator.user, size);
+    if (!memory) {
+        return sdv__fail(host, SDV_LOG_MEMORY, "a mesh of %u vertices", desc->vertex_count);
+    }
+    if (!sdv__mesh_fill(desc, memory, memory + 3 * (size_t)desc->vertex_count,
+                        (uint8_t *)(memory + 3 * (size_t)desc->vertex_count + desc->triangle_count),
+                        bounds)) {
+        allocator.release(allocator.user, memory, size);
+        return sdv__fail(host, SDV_LOG_MESH, NULL);
+    }
+    sdv_object_drawn(host, bounds[0], object);
+    object->memory = memory;
+    object->size = size;
+    object->desc.triangle_count = desc->triangle_count;
+    object->desc.buffer_count = 4;
+    sdv__object_buffer_of(object, 1, 7, memory, 3 * desc->vertex_count);
+    memory += 3 * (size_t)desc->vertex_count;
+    sdv__object_buffer_of(object, 2, 8, memory, desc->triangle_count);
+    sdv__object_buffer_of(object, 3, 4, memory + desc->triangle_count, desc->vertex_count);
+    return LAO_OK;
+}
+
+typedef struct sdv__grey {
+    float value;
+    uint32_t place;
+} sdv__grey;
+static int sdv__by_grey(const void *a, const void *b) {
+    const sdv__grey *x = (const sdv__grey *)a, *y = (const sdv__grey *)b;
+    if (x->value != y->value) {
+        return x->value < y->value ? -1 : 1;
+    }
+    return x->place < y->place ? -1 : x->place > y->place;
+}
+
+SDV_API lao_result sdv_object_pattern(const sdv_host *host, const float *values, uint32_t size,
+                                      sdv_object *object) {
+    lao_allocator a = sdv__allocator(host);
+    uint32_t i, count = size * size;
+    sdv__grey *greys;
+    float *pattern;
+    if (!values || !object || object->pattern || !object->desc.buffers) {
+        return sdv__fail(host, SDV_LOG_NULL_ARGUMENT, "sdv_object_pattern");
+    }
+    if (size < 1 || size > SDV_MOST_PATTERN) {
+        return sdv__fail(host, SDV_LOG_IMAGE_SIZE, "a pattern of %u x %u", size, size);
+    }
+    greys = (sdv__grey *)sdv__take(&a, count, sizeof *greys);
+    pattern = (float *)sdv__take(&a, count + 1, sizeof *pattern);
+    if (!greys || !pattern) {
+        sdv__give(&a, greys);
+        sdv__give(&a, pattern);
+        return sdv__fail(host, SDV_LOG_MEMORY, "a pattern of %u x %u", size, size);
+    }
+    for (i = 0; i < count; i++) {
+        greys[i].value = values[i] == values[i] ? values[i] : 0.0f;
+        greys[i].place = i;
+    }
+    qsort(greys, count, sizeof *greys, sdv__by_grey);
+    pattern[0] = (float)size;
+    for (i = 0; i < count; i++) {
+        pattern[1 + greys[i].place] = ((float)i + 0.5f) / (float)count;
+    }
+    sdv__give(&a, greys);
+    object->pattern = pattern;
+    sdv__object_buffer_of(object, object->desc.buffer_count++, 9, pattern, count + 1);
+    return LAO_OK;
+}
+
 SDV_API void sdv_object_free(sdv_object *object) {
-    if (object && object->colors) {
-        object->allocator.release(object->allocator.user, object->colors,
-                                  4 * (size_t)object->buffers[4].texel_count);
-        object->colors = NULL;
+    if (object && object->pattern) {
+        sdv__give(&object->allocator, object->pattern);
+        object->pattern = NULL;
+    }
+    if (object && object->memory) {
+        object->allocator.release(object->allocator.user, object->memory, object->size);
+        object->memory = NULL;
     }
 }
 

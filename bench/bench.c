@@ -3,6 +3,7 @@
 
 #include "bench_case.h"
 #include "bench_flow.h"
+#include "bench_screen.h"
 #include "bench_surface.h"
 #include "bench_vessel.h"
 #include "bench_modules.h"
@@ -29,7 +30,7 @@ typedef struct bench_options {
     uint32_t lines[MOST], line_count;
     bench_size sizes[MOST];
     uint32_t size_count;
-    bool json, data, quick, flow, vessel, surface, help, table1;
+    bool json, data, quick, flow, vessel, screen, surface, help, table1;
     const char *export_lines;
 } bench_options;
 
@@ -52,6 +53,10 @@ static const char usage[] =
     "  --quick                 1000 lines at 214x230, 3 frames, unless told otherwise\n"
     "  --flow                  instead: pathlines of flow4d.h, 30000 (--quick: 1000; --lines N)\n"
     "  --vessel                instead: fields of embedded vessel trees and rays through them\n"
+    "  --screen                instead: the void, the guiding field, the parameterization and the "
+    "ink\n"
+    "                          of vessels at 512, 1024 and 2048 pixels squared, beside their "
+    "floors\n"
     "  --surface               instead: frames of meshes of 10,000 to 1,000,000 triangles, per "
     "pass\n"
     "  --export-lines FILE     only write lines and camera for bench/vtk_peer.py\n"
@@ -170,10 +175,11 @@ static bool parse_flag(int argc, char **argv, int *i, bench_options *options) {
     struct {
         const char *name;
         bool *value;
-    } switches[] = {{"--json", &options->json},       {"--data", &options->data},
-                    {"--quick", &options->quick},     {"--table1", &options->table1},
-                    {"--flow", &options->flow},       {"--vessel", &options->vessel},
-                    {"--surface", &options->surface}, {"--help", &options->help}};
+    } switches[] = {{"--json", &options->json},     {"--data", &options->data},
+                    {"--quick", &options->quick},   {"--table1", &options->table1},
+                    {"--flow", &options->flow},     {"--vessel", &options->vessel},
+                    {"--screen", &options->screen}, {"--surface", &options->surface},
+                    {"--help", &options->help}};
     for (size_t k = 0; k < sizeof switches / sizeof *switches; k++) {
         if (strcmp(argv[*i], switches[k].name) == 0)
             return *switches[k].value = true;
@@ -432,6 +438,14 @@ static bool vessel_run(const bench_options *options, cJSON *document) {
     return bench_vessel_run(document, options->quick);
 }
 
+/* The same of `--screen`. */
+static bool screen_run(const bench_options *options, cJSON *document) {
+    cJSON_AddStringToObject(document, "program", "lineao bench --screen");
+    cJSON_AddNumberToObject(document, "version", LAO_VERSION);
+    cJSON_AddNumberToObject(document, "processors", (double)sysconf(_SC_NPROCESSORS_ONLN));
+    return bench_screen_run(document, options->quick);
+}
+
 /* The same of `--surface`. */
 static bool surface_run(const bench_options *options, cJSON *document) {
     cJSON_AddStringToObject(document, "program", "lineao bench --surface");
@@ -457,7 +471,7 @@ int bench_command(int argc, char **argv) {
     }
     if (options.help)
         return fputs(usage, stdout) < 0;
-    bool lines = !options.flow && !options.vessel && !options.surface;
+    bool lines = !options.flow && !options.vessel && !options.surface && !options.screen;
     if (lines)
         fill_in(&options);
     if (lines && options.export_lines)
@@ -465,6 +479,7 @@ int bench_command(int argc, char **argv) {
     cJSON *document = cJSON_CreateObject();
     bool ok = options.flow      ? flow_run(&options, document)
               : options.vessel  ? vessel_run(&options, document)
+              : options.screen  ? screen_run(&options, document)
               : options.surface ? surface_run(&options, document)
                                 : run(&options, document);
     if (ok && lines)
@@ -475,6 +490,8 @@ int bench_command(int argc, char **argv) {
         bench_flow_print(document);
     else if (ok && options.vessel)
         bench_vessel_print(document);
+    else if (ok && options.screen)
+        bench_screen_print(document);
     else if (ok && options.surface)
         bench_surface_print(document);
     else if (ok)

@@ -100,3 +100,16 @@ sdv_solid_sample sdv_solid_at(samplerBuffer cells, samplerBuffer ids, samplerBuf
     r.solid = sdv_solid_add_all(shapes, fields, tree, p, true);
     return r;
 }
+/* ---- light and ink */
+/* How dark the depth shadow at a traced pixel is; normal, ray: its texels. */
+float sdv_depth_shadow_at(vec4 normal, vec4 ray) {
+    return sdv_depth_shadow(normal.w, ray.y, ray.x, lao_setting_shadow_ratio,
+                            0.01 * lao_setting_shadow_width * lao_frame.depth.z, lao_setting_shadow_softness);
+}
+/* Periods per pixel along z at p, a place of a surface of normal n. */
+float sdv_footprint_at(lao_v3 z, lao_v3 n, lao_v3 p, lao_v3 direction, float period) {
+    lao_v3 zero = lao_v3_make(0.0, 0.0, 0.0);
+    float mm = sdv_pixel_size(lao_frame.ray, sdv_depth_of(lao_frame.view, p), lao_frame.depth.w);
+    return sdv_style_footprint(z, n, lao_v3_unit(lao_frame.world.x.xyz, zero), lao_v3_unit(lao_frame.world.y.xyz, zero),
+                               direction, mm, period);
+}

@@ -12,9 +12,10 @@ void main() {
     out_depth = vec4(0.0);
     if (sdv_is_covered(hit.w)) {
         out_depth = vec4(sdv_depth_of(lao_frame.view, hit.xyz), 1.0, 0.0, 1.0);
-    } else if (lao_frame.history.x > 0.5) {
+    } else {
         vec4 before = texelFetch(surface, pixel, 0);
-        if (lao_abs(before.w) == sdv_surface_mark(lao_setting_ssp_period, lao_step.source.z)) {
+        float mark = lao_frame.history.x > 0.5 ? sdv_surface_mark(lao_setting_ssp_period, lao_step.source.z) : -1.0;
+        if (lao_abs(before.w) == mark) {
             out_depth = vec4(sdv_depth_of(lao_frame.previous_view, before.xyz), 0.0, 0.0, SDV_BACKGROUND_INERTIA);
         }
     }

@@ -2,6 +2,7 @@
 LAO_TEX(0, sampler2D, own)
 LAO_TEX(1, sampler2D, parents)
 LAO_CONSTANT(0, lao_constant_variant) /* 1: the top, which has no parents */
+LAO_CONSTANT(1, lao_constant_void_exponent)
 
 LAO_OUT(0, vec4, out_filled) /* depth, mm; nothing; 1: the whole picture is empty; weight */
 
@@ -25,7 +26,7 @@ void main() {
             m = sdv_mix_add(m, vec4(p.xyz, 0.0), p.w, sdv_push_share(1, i & 1) * sdv_push_share(1, i >> 1));
         }
     }
-    float kept = sdv_push_own(t.w, SDV_BACKGROUND_EXPONENT);
+    float kept = sdv_push_own(t.w, lao_constant_void_exponent);
     out_filled = vec4(sdv_push_value(m, vec4(t.xyz, 0.0), kept).xyz, sdv_push_weight(m, kept));
 }
 #endif

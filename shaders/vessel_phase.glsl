@@ -14,10 +14,11 @@ LAO_OUT(0, vec4, out_phase) /* u, v, radians; 1: as recalled, not to be optimise
 
 #ifdef LAO_FRAGMENT
 float first_level() {
-    bool rests = lao_setting_ssp_converge > 0.5 && sdv_same_matrix(lao_frame.view, lao_frame.previous_view) &&
-                 sdv_same_matrix(lao_frame.projection, lao_frame.previous_projection);
+    LAO_EXACT float busy = sdv_apart(lao_frame.view, lao_frame.previous_view) +
+                           sdv_apart(lao_frame.projection, lao_frame.previous_projection) +
+                           lao_max(1.0 - lao_setting_ssp_converge, 0.0);
     LAO_EXACT float period = lao_setting_ssp_period * lao_pixel_zoom(lao_frame.scale, lao_frame.depth, 0.5);
-    return sdv_recycle_level(lao_setting_ssp_recycle, period, rests);
+    return sdv_recycle_level(lao_setting_ssp_recycle, period, busy);
 }
 
 void main() {
@@ -30,9 +31,9 @@ void main() {
         }
         return;
     }
-    float first = first_level();
-    if (r.w > 0.0 && lao_step.size.z >= first) {
-        out_phase = vec4(r.xy, lao_step.size.z > first ? 1.0 : 0.0, 0.0);
+    LAO_EXACT float beyond = lao_step.size.z - first_level() + 0.5; /* no branch by it alone: see sdv_apart */
+    if (r.w * lao_max(beyond, 0.0) > 0.0) {
+        out_phase = vec4(r.xy, beyond > 1.0 ? 1.0 : 0.0, 0.0);
         return;
     }
     lao_v3 p = texelFetch(place, pixel, 0).xyz;

@@ -4,7 +4,9 @@ LAO_TEX(1, sampler2D, depth)
 LAO_TEX(2, sampler2D, position)
 LAO_TEX(3, sampler2D, normal)
 LAO_TEX(4, samplerBuffer, cones)
+LAO_TEX(5, sampler2D, direction) /* with variant 1 */
 LAO_CONSTANT(0, lao_constant_guide)
+LAO_CONSTANT(1, lao_constant_variant) /* 1: not a tree's surface */
 
 LAO_OUT(0, vec4, out_surface) /* world, mm; sdv_surface_mark, 0 in an empty picture */
 LAO_OUT(1, vec4, out_normal)  /* world, towards the viewer */
@@ -40,7 +42,12 @@ vec4 guide(ivec2 pixel, vec4 hit, lao_v3 n) {
     if (!sdv_is_covered(hit.w)) {
         return vec4(0.0);
     }
-    if (lao_constant_guide == SDV_GUIDE_AXIS) {
+    if (lao_constant_guide == SDV_GUIDE_OWN && lao_constant_variant == 1) {
+        vec4 own = texelFetch(direction, pixel, 0);
+        vec4 t = sdv_axis_tensor(sdv_turned(lao_frame.view, own.xyz));
+        return vec4(t.xyz, t.w * own.w);
+    }
+    if (lao_constant_guide == SDV_GUIDE_OWN) {
         if (hit.w < 0.0) {
             return vec4(0.0);
         }

@@ -11,10 +11,12 @@ LAO_OUT(0, vec4, out_uv) /* u, v, radians; guide on the screen, unit */
 #ifdef LAO_FRAGMENT
 void main() {
     ivec2 pixel = LAO_PIXEL;
-    bool rests = lao_frame.history.x > 0.5 && lao_setting_ssp_converge < 0.5 &&
-                 sdv_same_matrix(lao_frame.view, lao_frame.previous_view) &&
-                 sdv_same_matrix(lao_frame.projection, lao_frame.previous_projection);
-    if (rests && sdv_phase_stays(texelFetch(surface, pixel, 0), texelFetch(surface_before, pixel, 0))) {
+    LAO_EXACT float busy = sdv_apart(lao_frame.view, lao_frame.previous_view) +
+                           sdv_apart(lao_frame.projection, lao_frame.previous_projection) + lao_setting_ssp_converge +
+                           lao_max(1.0 - lao_frame.history.x, 0.0);
+    bool stays = sdv_phase_stays(texelFetch(surface, pixel, 0), texelFetch(surface_before, pixel, 0));
+    LAO_EXACT float changes = busy + (stays ? 0.0 : 1.0);
+    if (changes == 0.0) {
         out_uv = texelFetch(uv_before, pixel, 0);
         return;
     }

@@ -71,12 +71,16 @@ static const flag_row flags[] = {
     {"--intersect", NULL, "SHAPE", FLAG_SHAPE, CLI_VESSEL, ALL(vessel.shapes), "1", "keep what is inside; the shapes are applied in the order of the flags"},
     {"--union", NULL, "SHAPE", FLAG_SHAPE, CLI_VESSEL, ALL(vessel.shapes), "0", "add the shape; --union tree adds the vessels again, behind the cuts of an organ"},
     {"--shape-color", NULL, "#rrggbb|nearest", FLAG_PAINT, CLI_VESSEL, ALL(vessel.shape_color), NULL, "of what shapes add or cut open, or that of the nearest vessel"},
+    {"--surface", NULL, "NAME", FLAG_TEXT, CLI_VESSEL, ALL(vessel.surface), NULL, "without a FILE: an embedded surface instead of a tree: liver, aneurysm, aorta or bone"},
+    {"--pattern", NULL, "FILE.png", FLAG_TEXT, CLI_VESSEL, ALL(vessel.pattern), NULL, "for --set style=pattern: the picture, dark parts first, that ink makes of (u, v); its middle square, up to 256 pixels"},
+    {"--last", NULL, NULL, FLAG_SWITCH, CLI_VESSEL, ALL(vessel.last), NULL, "of several cameras or frames write only the last picture, to FILE.png as it is"},
+    {"--margin", NULL, "N", FLAG_COUNT, CLI_VESSEL, ALL(vessel.margin), NULL, "pixels drawn around the picture and not shown, so that what comes into view has its texture coordinates (0); a dump has them"},
     {"--nodes", NULL, "N", FLAG_COUNT, CLI_VESSEL, ALL(vessel.nodes), NULL, "of the embedded tree, when no TREE is given (3000)"},
     {"--cameras", NULL, "FILE.json", FLAG_TEXT, CLI_VESSEL, ALL(vessel.cameras), NULL, "an array of cameras: one picture for each"},
-    {"--frames", NULL, "N", FLAG_COUNT, CLI_VESSEL, ALL(frames), NULL, "pictures of one turn around the tree"},
+    {"--frames", NULL, "N", FLAG_COUNT, CLI_VESSEL, ALL(frames), NULL, "pictures of one turn around the tree; of --cameras, the first N"},
     {"--lines", NULL, "FILE", FLAG_TEXT, CLI_SURFACE, ALL(surface.lines), NULL, "pathlines with the point array 'time' (ms), or steady lines with 'speed' or 'velocity' (m/s): drawn inside, and what the surface lights up for"},
     {"--baseline", NULL, "NAME", FLAG_CHOICE, CLI_SURFACE, ALL(surface.baseline), "transparent|fresnel", "for comparison, the setting shading: transparent or fresnel"},
-    {"--brightness", NULL, "MM|auto", FLAG_AUTO, CLI_SURFACE, ALL(surface.brightness), NULL, "how much the wall shows of its shape; auto: by its median curvature (1.5; embedded surfaces: auto)"},
+    {"--brightness", NULL, "MM|auto", FLAG_AUTO, CLI_SURFACE, ALL(surface.brightness), NULL, "how much the wall shows of its shape; auto: by its median curvature (of a MESH 1.5, else auto)"},
     {"--focus", NULL, "NEAR,FAR|X,Y,Z,R", FLAG_FOCUS, CLI_SURFACE, ALL(surface), NULL, "blur what is nearer or farther from the eye than this (mm), or than a ball"},
     {"--value", NULL, "NAME", FLAG_TEXT, CLI_SURFACE, ALL(surface.value), NULL, "hue by this array of the MESH (its length, if a vector) instead of by near flow; --range says from where to where"},
     {"--vertices", NULL, "FILE.json", FLAG_TEXT, CLI_SURFACE, ALL(surface.vertices), NULL, "numbers of every vertex: p, n, measure, near; triangles; with lines phi, beta, gamma"},
@@ -89,7 +93,7 @@ static const flag_row flags[] = {
     {"--time", NULL, "MS", FLAG_NUMBER, CLI_SURFACE, ALL(time), NULL, "what is lit: the lines around this time, and the surface near them (0; of the embedded flow 180, of a VOLUME half of the median line's)"},
     {"--unit", NULL, "NAME", FLAG_CHOICE, CLI_SURFACE, FILE_(unit), "mm|cm|um|m|m/s|cm/s|mm/s", "of the MESH or TREE: mm (default), cm, um or m; of a VOLUME's velocities: m/s (default), cm/s or mm/s"},
     {"--grid", NULL, "N", FLAG_COUNT, CLI_SURFACE, ALL(surface.grid), NULL, "of a TREE: voxels along its longest axis, of which the mesh is made, 32..512 (256)"},
-    {"--wall-colormap", NULL, "NAME", FLAG_CHOICE, CLI_SURFACE, ALL(surface.colormap), COLOUR_MAPS, "show near flow or --value by a colour map, not by two hues: " COLOUR_MAPS},
+    {"--wall-colormap", NULL, "NAME", FLAG_CHOICE, CLI_SURFACE, ALL(surface.colormap), COLOUR_MAPS, "show near flow or --value by a colour map, not by two hues (which is the default): " COLOUR_MAPS},
     {"--contours", NULL, "MM", FLAG_ABOVE, CLI_SURFACE, ALL(surface.contours[0]), NULL, "draw the wall's contours as lines this wide"},
     {"--suggestive-contours", NULL, "MM", FLAG_ABOVE, CLI_SURFACE, ALL(surface.contours[1]), NULL, "draw where contours would appear next if the view turned, as lines this wide"},
     {"--suggestive-threshold", NULL, "X", FLAG_LENGTH, CLI_SURFACE, ALL(surface.threshold), NULL, "all of these whose measure has this slope across them (1/mm^2); unless given the clear ones, by the median curvature"},
@@ -605,12 +609,11 @@ static bool check_vessel(const cli_options *o) {
     if (v->shape_color && strcmp(v->shape_color, "nearest") != 0 && *v->shape_color != '#')
         return cli_fail("--shape-color: '%s' is not a value of it; write #rrggbb or nearest",
                         v->shape_color);
-    if (v->cameras && (o->camera || o->frames || o->view || o->ortho))
+    if (v->cameras && (o->camera || o->view || o->ortho))
         return cli_fail("--cameras: says where every picture is taken from; leave %s out",
-                        o->camera   ? "--camera"
-                        : o->frames ? "--frames"
-                        : o->view   ? "--view"
-                                    : "--ortho");
+                        o->camera ? "--camera"
+                        : o->view ? "--view"
+                                  : "--ortho");
     return true;
 }
 

@@ -84,14 +84,16 @@ typedef struct cli_target_option {
     const char *text;
 } cli_target_option;
 typedef struct cli_vessel_options {
-    const char *style, *tree, *cameras, *weight;
+    const char *style, *tree, *cameras, *weight, *surface, *pattern;
     cli_target_option targets[CLI_TARGETS]; /* several only with `link` */
     uint32_t target_count;
     double risk; /* mm; negative: not given */
     bool link;
     const char *shape_color; /* "nearest" or a colour; NULL: ivory */
     const char *layout[2];   /* NAME.svg, NAME.json */
-    uint32_t grid, nodes;    /* cells; nodes of the embedded tree; 0: not given */
+    uint32_t margin;         /* pixels */
+    bool last;
+    uint32_t grid, nodes; /* cells; nodes of the embedded tree; 0: not given */
     cli_shape_option shapes[CLI_SHAPES];
     uint32_t shape_count;
 } cli_vessel_options;

@@ -191,8 +191,11 @@ static bool read_views(const cli_options *options, view_list *out) {
     if (!options->vessel.cameras)
         return true;
     out->numbered = true;
-    return camera_read_all(options->vessel.cameras, &out->poses, &out->count, error) ||
-           cli_fail("%s", error);
+    if (!camera_read_all(options->vessel.cameras, &out->poses, &out->count, error))
+        return cli_fail("%s", error);
+    if (options->frames && options->frames < out->count)
+        out->count = options->frames;
+    return true;
 }
 
 /* The camera turned around its up vector through the point that it looks at, by a part of a turn.
@@ -236,7 +239,9 @@ static bool draw_views(stage *s, const view_list *views) {
         cli_shot_aim(&s->trees[0].scene, &s->shot);
         if (views->count > 1)
             cli_progress_show(&progress, i, views->count);
-        ok = draw_all(s, flags) && write_frame(s, views->numbered ? (int64_t)i : -1);
+        bool last = options->vessel.last, shown = !last || i + 1 == views->count;
+        ok = draw_all(s, flags) &&
+             (!shown || write_frame(s, views->numbered && !last ? (int64_t)i : -1));
     }
     cli_progress_end(&progress);
     return ok;
@@ -372,6 +377,10 @@ static bool report(const cli_tree *tree, uint32_t count) {
     const sdv_tree_info *info = &tree->vessel.tree.info;
     cJSON *json = cJSON_CreateObject();
     cJSON_AddStringToObject(json, tree->source->path ? "path" : "scene", tree->name);
+    if (tree->mesh.vertex_count) {
+        cJSON_AddNumberToObject(json, "vertices", tree->mesh.vertex_count);
+        cJSON_AddNumberToObject(json, "triangles", tree->mesh.triangle_count);
+    }
     cJSON_AddNumberToObject(json, "nodes", info->nodes);
     cJSON_AddNumberToObject(json, "segments", info->segments);
     cJSON_AddNumberToObject(json, "roots", info->roots);

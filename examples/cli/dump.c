@@ -239,8 +239,8 @@ static bool add_module(cli_planes *w, cli_session *session, const lao_module *mo
 static bool add_images(cli_planes *w, cli_session *session, const cli_scene *scene,
                        const cli_shot *shot) {
     uint32_t factor = (uint32_t)lao_settings_filled(&scene->sets[0].settings).supersampling;
-    w->width = shot->width * factor;
-    w->height = shot->height * factor;
+    w->width = (shot->width + 2 * shot->margin) * factor;
+    w->height = (shot->height + 2 * shot->margin) * factor;
     snprintf(w->part_names[0], NAME, "full");
     return (!scene->module || add_module(w, session, scene->module, false)) &&
            add_module(w, session, lao_lines_module(), scene->module != NULL);

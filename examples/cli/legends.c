@@ -6,7 +6,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-const char *cli_unit_of(const char *attribute) {
+/* The unit of an attribute that is known by its name, or NULL. */
+static const char *unit_of(const char *attribute) {
     static const char *const units[][2] = {{"time", "ms"}, {"speed", "m/s"}, {"velocity", "m/s"}};
     for (size_t i = 0; i < sizeof units / sizeof *units; i++) {
         if (strcmp(units[i][0], attribute) == 0)
@@ -42,7 +43,7 @@ bool cli_legends_draw(const cli_options *options, const cli_scene *scene, const 
         const cli_set *set = &scene->sets[s];
         if (is_known(scene, s))
             continue;
-        const char *unit = cli_unit_of(set->value);
+        const char *unit = unit_of(set->value);
         char *title = titles[count - more_count];
         colour_map *map = &maps[count - more_count];
         snprintf(title, TITLE, "%s%s%s%s", set->value, unit ? " (" : "", unit ? unit : "",

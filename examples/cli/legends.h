@@ -5,9 +5,6 @@
 #include "legend.h"
 #include "load.h"
 
-/* The unit of an attribute that is known by its name, or NULL. */
-const char *cli_unit_of(const char *attribute);
-
 /* Draws the legends of the sets' colours at the side that --legend names, unless that is "off", and
  * `more` (at most 4) before them. --legend-title is the first one's. False: reported. */
 bool cli_legends_draw(const cli_options *options, const cli_scene *scene, const legend *more,

@@ -141,8 +141,9 @@ bool cli_session_open(cli_session *session, const char *backend, const cli_scene
     desc.logger.user = session;
     desc.modules = &scene->module;
     desc.module_count = scene->module ? 1 : 0;
-    size.width = shot->width;
-    size.height = shot->height;
+    size.width = shot->width + 2 * shot->margin;
+    size.height = shot->height + 2 * shot->margin;
+    session->margin = shot->margin;
     size.flags = view_flags;
     return lao_create(&desc, &session->context) == LAO_OK && upload(session, scene) &&
            lao_view_create(session->context, &size, &session->view) == LAO_OK;
@@ -266,11 +267,22 @@ float *cli_session_image(cli_session *session, const char *name, uint32_t level,
     return data;
 }
 
+/* Leaves the margin away. */
+static void crop(uint8_t *pixels, lao_read_info *info, uint32_t margin) {
+    uint32_t width = info->width - 2 * margin, height = info->height - 2 * margin;
+    for (size_t y = 0; margin && y < height; y++)
+        memmove(pixels + 4 * y * width, pixels + 4 * ((y + margin) * info->width + margin),
+                4 * (size_t)width);
+    info->width = width;
+    info->height = height;
+}
+
 bool cli_session_picture(cli_session *session, picture *out) {
     lao_read_info info;
     uint8_t *pixels = cli_session_texels(session, "out", 0, &info);
     if (!pixels)
         return info.width == 0 && cli_fail("%s: the frame graph has no picture", session->backend);
+    crop(pixels, &info, session->margin);
     flip(pixels, info.height, (size_t)info.width * 4);
     for (size_t i = 0; i < (size_t)info.width * info.height; i++) {
         uint8_t *p = pixels + 4 * i;

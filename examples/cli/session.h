@@ -11,6 +11,7 @@ typedef struct cli_shot {
     camera_pose camera; /* mm, absolute */
     float view[16], projection[16], sphere[4], background[4], time;
     uint32_t width, height;
+    uint32_t margin; /* pixels around these that are drawn, and in dumps, but not in pictures */
     uint32_t frame_flags; /* LAO_FRAME_... of every frame */
 } cli_shot;
 
@@ -28,6 +29,7 @@ typedef struct cli_session {
     lao_view view;
     lao_set *sets; /* owned */
     uint32_t set_count;
+    uint32_t margin;
     double milliseconds; /* of the last frame */
     bool quiet;          /* a failure is expected: do not report it */
 } cli_session;

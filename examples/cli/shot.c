@@ -60,12 +60,20 @@ void cli_shot_aim(const cli_scene *scene, cli_shot *shot) {
         widest = fmaxf(widest, lao_settings_filled(&scene->sets[s].settings).width);
     camera_matrices(&local, (double)shot->width / shot->height, center,
                     (double)shot->sphere[3] + widest, true, shot->view, shot->projection);
+    if (shot->margin) {
+        lao_camera seen;
+        memset(&seen, 0, sizeof seen);
+        memcpy(seen.projection, shot->projection, sizeof seen.projection);
+        sdv_camera_margin(&seen, shot->width, shot->height, shot->margin, &seen);
+        memcpy(shot->projection, seen.projection, sizeof seen.projection);
+    }
 }
 
 bool cli_shot_make(const cli_options *options, const cli_scene *scene, cli_shot *out) {
     char error[CAMERA_ERROR_SIZE];
     double aspect = (double)options->size[0] / options->size[1];
     memset(out, 0, sizeof *out);
+    out->margin = options->vessel.margin;
     out->width = options->size[0];
     out->height = options->size[1];
     out->time = (float)(!isnan(options->time) ? options->time

@@ -26,10 +26,15 @@ static void on_log(void *user, sdv_log_item item, lao_result result, const char 
 
 /* ---- the tree --------------------------------------------------------------------------- */
 
+static bool is_surface(const cli_tree *tree) {
+    return tree->options->vessel.surface || tree->contents.kinds == IO_MESH;
+}
+
 static bool read_tree(cli_tree *out) {
     io_error error;
-    return cli_read(out->source, IO_TREE, &out->contents) &&
-           (io_vessel_build(&out->host, &out->contents.tree, &out->vessel, &error) ||
+    return cli_read(out->source, IO_TREE | IO_MESH, &out->contents) &&
+           (is_surface(out) ||
+            io_vessel_build(&out->host, &out->contents.tree, &out->vessel, &error) ||
             (cli_interrupted() ? cli_go_on() : cli_fail("%s: %s", out->name, error.text)));
 }
 
@@ -158,8 +163,9 @@ bool cli_tree_load(const cli_options *options, uint32_t index, cli_tree *out) {
     out->host.job = cli_threads_job(out->threads, &out->progress);
     out->host.log = on_log;
     out->host.user = out;
-    bool ok = (out->source->path ? read_tree(out) : make_tree(out)) && cli_target_make(out) &&
-              lay_out(out) && measure(out);
+    bool ok = out->source->path ? read_tree(out) : options->vessel.surface ? true : make_tree(out);
+    ok = ok && (is_surface(out) ? cli_tree_mesh(out)
+                                : cli_target_make(out) && lay_out(out) && measure(out));
     cli_progress_end(&out->progress);
     return ok;
 }
@@ -210,6 +216,13 @@ static void imply(const char *name, float value, sdv_settings *settings) {
 static bool make_points(cli_tree *tree, io_lines *lines) {
     const sdv_tree *t = &tree->vessel.tree;
     const sdv_shapes *shapes = &tree->carving.shapes;
+    if (is_surface(tree)) {
+        lines->points = cli_new(tree->mesh.vertex_count, 12);
+        if (lines->points)
+            memcpy(lines->points, tree->mesh.positions, 12 * (size_t)tree->mesh.vertex_count);
+        lines->point_count = tree->mesh.vertex_count;
+        return lines->points != NULL;
+    }
     float *to = lines->points = cli_new(6 * (size_t)t->node_count + 2 * CLI_SHAPES, 12);
     if (!to)
         return false;
@@ -334,6 +347,9 @@ bool cli_tree_prepare(cli_tree *tree) {
     sdv_grid_desc desc;
     memset(&desc, 0, sizeof desc);
     desc.resolution = tree->options->vessel.grid;
+    if (is_surface(tree))
+        return cli_go_on() && cli_tree_mesh_object(tree) && make_scene(tree) &&
+               cli_tree_pattern(tree);
     tree->progress = (cli_progress){"measuring the field of", tree->name, -1};
     double begin = now();
     bool ok = sdv_grid_build(&tree->host, &tree->vessel.tree, &desc, &tree->grid) == LAO_OK;
@@ -343,12 +359,13 @@ bool cli_tree_prepare(cli_tree *tree) {
          sdv_object_make(&tree->host, &tree->grid, tree->colors, &tree->object) == LAO_OK;
     ok = ok && (!tree->carving.shapes.count || add_shapes(tree)) &&
          (!tree->aim || !tree->options->vessel.link || cli_marker_make(tree));
-    return ok && make_scene(tree);
+    return ok && make_scene(tree) && cli_tree_pattern(tree);
 }
 
 void cli_tree_free(cli_tree *tree) {
     cli_scene_free(&tree->scene);
     sdv_object_free(&tree->object);
+    vsf_mesh_free(&tree->mesh);
     free(tree->colors);
     sdv_grid_free(&tree->grid);
     free(tree->carving.fields);

@@ -49,6 +49,7 @@ typedef struct cli_tree {
     const char *value; /* what the colours show; NULL: no number */
     double range[2];   /* its values at both ends of the colour map */
     const char *colormap;
+    vsf_mesh mesh; /* instead of a tree: a surface, positions as the tree's */
     sdv_object object;
     sdv_settings settings;
     cli_marker marker; /* of the target, where it is drawn */
@@ -63,6 +64,13 @@ bool cli_tree_prepare(cli_tree *tree);
 /* Makes the period of ink and marks a number of pixels of the shot, unless it is given. */
 void cli_tree_fit_period(cli_tree *tree, const cli_shot *shot);
 void cli_tree_free(cli_tree *tree);
+
+/* A surface instead of a tree: that of the file, once it is read, or --surface. False: reported. */
+bool cli_tree_mesh(cli_tree *tree);
+/* Its object. False: reported. */
+bool cli_tree_mesh_object(cli_tree *tree);
+/* Reads --pattern into the object. False: reported. */
+bool cli_tree_pattern(cli_tree *tree);
 
 /* Reads --subtract and its like into tree->carving. False: reported. */
 bool cli_carving_make(cli_tree *tree);

@@ -505,8 +505,11 @@ static void full_barrier(VkCommandBuffer commands, const host_vk_image *image, V
                          VK_PIPELINE_STAGE_ALL_COMMANDS_BIT, 0, 0, NULL, 0, NULL, 1, &barrier);
 }
 
-static bool copy_to_buffer(host_vk *host, const host_vk_image *image, VkImageLayout layout,
-                           VkBuffer buffer) {
+/* Between the image and the buffer. */
+static bool copy(host_vk *host, const host_vk_image *image, VkImageLayout layout, VkBuffer buffer,
+                 bool write) {
+    VkImageLayout here =
+        write ? VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL : VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL;
     VkCommandBuffer commands = host_vk_begin(host);
     if (!commands)
         return false;
@@ -514,10 +517,12 @@ static bool copy_to_buffer(host_vk *host, const host_vk_image *image, VkImageLay
         .imageSubresource = {image->aspect, 0, 0, 1},
         .imageExtent = {image->width, image->height, 1},
     };
-    full_barrier(commands, image, layout, VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL);
-    vkCmdCopyImageToBuffer(commands, image->image, VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL, buffer, 1,
-                           &region);
-    full_barrier(commands, image, VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL, layout);
+    full_barrier(commands, image, layout, here);
+    if (write)
+        vkCmdCopyBufferToImage(commands, buffer, image->image, here, 1, &region);
+    else
+        vkCmdCopyImageToBuffer(commands, image->image, here, buffer, 1, &region);
+    full_barrier(commands, image, here, layout);
     const VkMemoryBarrier to_host = {
         .sType = VK_STRUCTURE_TYPE_MEMORY_BARRIER,
         .srcAccessMask = VK_ACCESS_TRANSFER_WRITE_BIT,
@@ -528,15 +533,17 @@ static bool copy_to_buffer(host_vk *host, const host_vk_image *image, VkImageLay
     return host_vk_submit_and_wait(host, commands);
 }
 
-bool host_vk_image_read(host_vk *host, const host_vk_image *image, VkImageLayout layout,
-                        void *pixels) {
+/* To `out`, or from `in`. */
+static bool transfer(host_vk *host, const host_vk_image *image, VkImageLayout layout, void *out,
+                     const void *in) {
+    bool write = in != NULL;
     size_t size = host_vk_texel_size(image->format) * image->width * image->height;
     if (size == 0)
         return false;
     const VkBufferCreateInfo info = {
         .sType = VK_STRUCTURE_TYPE_BUFFER_CREATE_INFO,
         .size = size,
-        .usage = VK_BUFFER_USAGE_TRANSFER_DST_BIT,
+        .usage = write ? VK_BUFFER_USAGE_TRANSFER_SRC_BIT : VK_BUFFER_USAGE_TRANSFER_DST_BIT,
     };
     VkBuffer buffer = VK_NULL_HANDLE;
     VkDeviceMemory memory = VK_NULL_HANDLE;
@@ -549,12 +556,24 @@ bool host_vk_image_read(host_vk *host, const host_vk_image *image, VkImageLayout
             allocate(host, &needs,
                      VK_MEMORY_PROPERTY_HOST_VISIBLE_BIT | VK_MEMORY_PROPERTY_HOST_COHERENT_BIT);
         ok = memory && vkBindBufferMemory(host->device, buffer, memory, 0) == VK_SUCCESS &&
-             copy_to_buffer(host, image, layout, buffer) &&
              vkMapMemory(host->device, memory, 0, VK_WHOLE_SIZE, 0, &mapped) == VK_SUCCESS;
     }
-    if (ok)
-        memcpy(pixels, mapped, size);
+    if (ok && write)
+        memcpy(mapped, in, size);
+    ok = ok && copy(host, image, layout, buffer, write);
+    if (ok && !write)
+        memcpy(out, mapped, size);
     vkDestroyBuffer(host->device, buffer, NULL);
     vkFreeMemory(host->device, memory, NULL);
     return ok;
+}
+
+bool host_vk_image_read(host_vk *host, const host_vk_image *image, VkImageLayout layout,
+                        void *pixels) {
+    return transfer(host, image, layout, pixels, NULL);
+}
+
+bool host_vk_image_write(host_vk *host, const host_vk_image *image, VkImageLayout layout,
+                         const void *pixels) {
+    return transfer(host, image, layout, NULL, pixels);
 }

@@ -82,5 +82,8 @@ size_t host_vk_texel_size(VkFormat format);
  * memory order; pixels has width * height * host_vk_texel_size(format) bytes. Waits. */
 bool host_vk_image_read(host_vk *host, const host_vk_image *image, VkImageLayout layout,
                         void *pixels);
+/* The same the other way round. */
+bool host_vk_image_write(host_vk *host, const host_vk_image *image, VkImageLayout layout,
+                         const void *pixels);
 
 #endif

@@ -45,7 +45,10 @@ done
 [ "$(grep -vc '^sheet' "$work/calls")" -ge 40 ] || die "fewer than 40 panels"
 for camera in "$root"/examples/figures/cameras/*.json; do
     grep -q "$camera" "$work/calls" || die "$camera: is used by no figure"
-    "$program" render --lines 20 --camera "$camera" --save-camera "$work/camera.json" || die "$camera: cannot be read"
+    case $(head -c 1 "$camera") in
+        '[') "$program" vessel --nodes 20 --cameras "$camera" --save-camera "$work/camera.json" || die "$camera: cannot be read" ;;
+        *) "$program" render --lines 20 --camera "$camera" --save-camera "$work/camera.json" || die "$camera: cannot be read" ;;
+    esac
 done
 if grep "@" "$work/calls"; then die "a place was not filled in"; fi
 

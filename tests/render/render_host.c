@@ -422,6 +422,24 @@ static void surface_make(render_device *device, surface *s, lao_format format, u
         surface_make_vk(device, s, value);
 }
 
+/* An image with these texels. */
+static void surface_bring(render_device *device, surface *s, const render_image *image) {
+    surface_make(device, s, image->format, image->width, image->height, 0);
+    if (device->gl) {
+        GL_FUNCTION(PFNGLBINDTEXTUREPROC, bind_texture, "glBindTexture");
+        GL_FUNCTION(PFNGLTEXSUBIMAGE2DPROC, tex_sub_image, "glTexSubImage2D");
+        GLint internal;
+        GLenum layout, type;
+        gl_format(s->format, &internal, &layout, &type);
+        bind_texture(GL_TEXTURE_2D, s->texture);
+        tex_sub_image(GL_TEXTURE_2D, 0, 0, 0, (GLsizei)s->width, (GLsizei)s->height, layout, type,
+                      image->data);
+        bind_texture(GL_TEXTURE_2D, 0);
+    } else {
+        assert_true(host_vk_image_write(device->vk, &s->vk, VK_IMAGE_LAYOUT_GENERAL, image->data));
+    }
+}
+
 static lao_image surface_image(const surface *s, uint32_t flags) {
     lao_image image;
     memset(&image, 0, sizeof image);
@@ -559,8 +577,8 @@ void render_draw(render_device *device, const render_shot *shot, render_result *
     lao_set sets[RENDER_MOST_SETS];
     lao_view_desc desc;
     lao_frame frame;
-    lao_import import;
-    surface target, depth;
+    lao_import imports[RENDER_MOST_SETS];
+    surface target, depth, brought[RENDER_MOST_SETS];
     memset(result, 0, sizeof *result);
     memset(&frame, 0, sizeof frame);
     memset(sets, 0, sizeof sets);
@@ -570,20 +588,32 @@ void render_draw(render_device *device, const render_shot *shot, render_result *
     desc.width = shot->width;
     desc.height = shot->height;
     desc.flags = LAO_VIEW_KEEP_IMAGES;
-    succeeds(device, lao_view_create(device->context, &desc, &frame.view));
+    if (shot->view && shot->view->id)
+        frame.view = *shot->view;
+    else
+        succeeds(device, lao_view_create(device->context, &desc, &frame.view));
+    if (shot->view)
+        *shot->view = frame.view;
     frame.camera = shot->camera;
     memcpy(frame.background, shot->background, sizeof frame.background);
     memcpy(frame.sphere, shot->sphere, sizeof frame.sphere);
     frame.time = shot->time;
     if (shot->host_depth) {
         surface_make(device, &depth, LAO_FORMAT_D32F, shot->width, shot->height, shot->depth_value);
-        import.image = "host_depth";
-        import.source = surface_image(&depth, shot->depth_flags | LAO_HOST_WRITABLE);
-        frame.imports = &import;
+        imports[0].image = "host_depth";
+        imports[0].source = surface_image(&depth, shot->depth_flags | LAO_HOST_WRITABLE);
+        frame.imports = imports;
         frame.import_count = 1;
         if (shot->depth_lines)
             draw_before(device, shot, &frame);
         surface_read(device, &depth, "host_depth before", &result->depth_before);
+    }
+    for (uint32_t i = 0; i < shot->import_count; i++) {
+        surface_bring(device, &brought[i], &shot->imports[i]);
+        imports[i].image = shot->imports[i].name;
+        imports[i].source = surface_image(&brought[i], 0);
+        frame.imports = imports;
+        frame.import_count = i + 1;
     }
     if (shot->target != RENDER_NO_TARGET) {
         lao_format format =
@@ -616,6 +646,8 @@ void render_draw(render_device *device, const render_shot *shot, render_result *
         if (shot->objects[i])
             succeeds(device, lao_object_destroy(device->context, sets[i].object));
     }
+    for (uint32_t i = 0; i < shot->import_count; i++)
+        surface_free(device, &brought[i]);
     if (shot->target != RENDER_NO_TARGET) {
         surface_read(device, &target, "target", &result->target);
         surface_free(device, &target);

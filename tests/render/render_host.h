@@ -81,6 +81,8 @@ typedef struct render_shot {
     lao_camera camera;
     const lao_camera *before; /* (Optional) frames drawn before in the same view */
     uint32_t before_count;
+    lao_view
+        *view; /* (Optional) id 0: receives the frame's view; else the frames go on in that one */
     const render_lines *lines[RENDER_MOST_SETS]; /* NULL: none */
     const lao_settings *settings[RENDER_MOST_SETS];
     const lao_object_desc *objects[RENDER_MOST_SETS]; /* NULL: none */
@@ -93,7 +95,9 @@ typedef struct render_shot {
     float target_value;    /* grey and alpha that it holds before */
     int host_depth;        /* non-zero: a depth image of the host, written and read */
     uint32_t depth_flags;
-    float depth_value;               /* that it holds before */
+    float depth_value;                  /* that it holds before */
+    const struct render_image *imports; /* (Optional) images of the graph that the host brings */
+    uint32_t import_count;              /* RENDER_MOST_SETS at most */
     const render_lines *depth_lines; /* (Optional) drawn into the host's depth by a frame before */
 } render_shot;
 

@@ -20,7 +20,8 @@ static lao_v4 **pyramid(screen *s, int i) {
     return i < (int)(sizeof all / sizeof all[0]) ? all[i] : NULL;
 }
 static lao_v4 **single(screen *s, int i) {
-    lao_v4 **all[] = {&s->surface, &s->bgnormal, &s->uv, &s->surface_before, &s->uv_before};
+    lao_v4 **all[] = {&s->surface,        &s->bgnormal,  &s->uv,        &s->ink,
+                      &s->surface_before, &s->uv_before, &s->ink_before};
     return i < (int)(sizeof all / sizeof all[0]) ? all[i] : NULL;
 }
 
@@ -34,6 +35,7 @@ bool screen_make(screen *s, uint32_t width, uint32_t height) {
     s->period = 4;
     s->sweeps = 4;
     s->recycle = -1;
+    lao_settings_resolve(sdv_module(), NULL, s->values);
     for (uint32_t w = width, h = height;; w = (w + 1) / 2, h = (h + 1) / 2) {
         for (int i = 0; pyramid(s, i); i++)
             all &= (pyramid(s, i)[s->levels] = calloc((size_t)w * h, sizeof(lao_v4))) != NULL;
@@ -59,6 +61,7 @@ void screen_next(screen *s) {
     size_t size = (size_t)s->width * s->height * sizeof(lao_v4);
     memcpy(s->surface_before, s->surface, size);
     memcpy(s->uv_before, s->uv, size);
+    memcpy(s->ink_before, s->ink, size);
     s->frame.previous_view = s->frame.view;
     s->frame.previous_projection = s->frame.projection;
     s->frame.history.x += 1;
@@ -157,7 +160,8 @@ static void fill(screen *s) {
         for (uint32_t k = 0; k < texels(s, l); k++) {
             texel at = texel_make(s, l, k);
             sdv_mix m = sdv_mix_start(zero());
-            float kept = sdv_push_own(s->depth[l][k].w, SDV_BACKGROUND_EXPONENT);
+            float kept =
+                sdv_push_own(s->depth[l][k].w, (lao_int)s->values[SDV_SETTING_ID_void_exponent]);
             for (int i = 0; i < 4; i++) {
                 long p = parent(&at, i);
                 if (p >= 0)
@@ -200,7 +204,12 @@ static lao_v4 guide_of(const texel *t, lao_v4 hit, lao_v3 n) {
     const screen *s = t->s;
     if (!sdv_is_covered(hit.w))
         return zero();
-    if (s->guide == SDV_GUIDE_AXIS) {
+    if (s->guide == SDV_GUIDE_OWN && s->directions) {
+        lao_v4 own = s->directions[t->at];
+        lao_v4 g = sdv_axis_tensor(sdv_turned(s->frame.view, xyz(own)));
+        return lao_v4_make(g.x, g.y, g.z, g.w * own.w);
+    }
+    if (s->guide == SDV_GUIDE_OWN) {
         size_t at = 2 * (size_t)(hit.w < 0 ? 0 : hit.w);
         if (hit.w < 0)
             return zero();
@@ -306,9 +315,9 @@ void screen_guide(screen *s) {
 
 /* -------------------------------------------------------------------------------------- phases */
 
-static bool rests(const screen *s) {
-    return sdv_same_matrix(s->frame.view, s->frame.previous_view) &&
-           sdv_same_matrix(s->frame.projection, s->frame.previous_projection);
+static float camera_apart(const screen *s) {
+    return sdv_apart(s->frame.view, s->frame.previous_view) +
+           sdv_apart(s->frame.projection, s->frame.previous_projection);
 }
 
 static lao_v4 recall(const screen *s, uint32_t k) {
@@ -339,7 +348,7 @@ static lao_v4 recall(const screen *s, uint32_t k) {
     phase = sdv_phase_recall(xyz(s->along[0][k]), xyz(s->across[0][k]),
                              sdv_guide_world(s->frame.previous_view, uv.z, uv.w), phase, apart,
                              LAO_TURN / s->period);
-    return lao_v4_make(phase.x, phase.y, 0, 1);
+    return lao_v4_make(phase.x, phase.y, s->ink_before[from].y, 1);
 }
 
 /* What texel `at` of level `from` says to `t`. */
@@ -421,7 +430,7 @@ static void sweep(screen *s, uint32_t l) {
 
 void screen_phases(screen *s) {
     float period = s->period * lao_pixel_zoom(s->frame.scale, s->frame.depth, 0.5f);
-    float first = sdv_recycle_level(s->recycle, period, s->converge > 0.5f && rests(s));
+    float first = sdv_recycle_level(s->recycle, period, camera_apart(s) + 1 - s->converge);
     for (uint32_t l = s->levels; l-- > 0;) {
         for (uint32_t k = 0; k < texels(s, l); k++)
             s->phase[l][k] = push(s, l, k, first);
@@ -431,7 +440,7 @@ void screen_phases(screen *s) {
 }
 
 void screen_parameterize(screen *s) {
-    bool stay = s->frame.history.x > 0.5f && s->converge < 0.5f && rests(s);
+    bool stay = s->frame.history.x > 0.5f && s->converge < 0.5f && camera_apart(s) == 0;
     for (uint32_t k = 0; k < texels(s, 0); k++)
         s->recalled[0][k] = recall(s, k);
     for (uint32_t l = 1; l < s->levels; l++)
@@ -445,4 +454,81 @@ void screen_parameterize(screen *s) {
         if (stay && sdv_phase_stays(s->surface[k], s->surface_before[k]))
             s->uv[k] = s->uv_before[k];
     }
+}
+
+/* ---------------------------------------------------------------------------------------- ink */
+
+static float footprint(const screen *s, lao_v4 z, lao_v3 n, lao_v3 p, lao_v3 direction) {
+    lao_v3 none = lao_v3_make(0, 0, 0);
+    return sdv_style_footprint(xyz(z), n, lao_v3_unit(xyz(s->frame.world.x), none),
+                               lao_v3_unit(xyz(s->frame.world.y), none), direction, pixel_mm(s, p),
+                               s->period);
+}
+
+static lao_v2 phase_of(lao_v4 t) {
+    return lao_v2_make(t.x, t.y);
+}
+
+static float paper(const screen *s, int style, lao_v2 phase, float dark, float shadow, float mark,
+                   float wide_u, float wide_v) {
+    float inked = 0, pattern = 0, left;
+    int n = s->pattern ? (int)s->pattern[0] : 0;
+    for (int i = 0; n > 0 && i < SDV_PATTERN_SAMPLES * SDV_PATTERN_SAMPLES; i++)
+        inked += dark > s->pattern[1 + sdv_pattern_at(phase, wide_u, wide_v, i, n)] ? 1.0f : 0.0f;
+    if (n > 0)
+        pattern = sdv_pattern_ink(inked, dark, wide_u, wide_v);
+    left = sdv_style_paper(style, phase, dark, shadow, wide_u, wide_v, pattern);
+    if (mark > 0)
+        left = left *
+               (1.0f - sdv_style_ink(SDV_STYLE_STIPPLE + (int)s->values[SDV_SETTING_ID_mark_style],
+                                     phase.x, phase.y, mark, wide_u, wide_v));
+    return left;
+}
+
+static bool marked(const screen *s, lao_v4 hit) {
+    size_t at = 2 * (size_t)(hit.w < 0 ? 0 : hit.w);
+    if (!s->colors || hit.w < 0)
+        return false;
+    return sdv_is_marked(xyz(hit), s->cones[at], s->cones[at + 1],
+                         (float)s->colors[4 * at + 3] / 255.0f,
+                         (float)s->colors[4 * at + 7] / 255.0f);
+}
+
+static lao_v4 ink(const screen *s, uint32_t k, lao_v4 hit, lao_v4 normal, const lao_v4 *ray) {
+    const float *v = s->values;
+    lao_v2 slope =
+        lao_pixel_slope(s->frame.ray, (float)(k % s->width) + 0.5f, (float)(k / s->width) + 0.5f);
+    lao_v3 direction = lao_ray_direction(s->frame.world, slope, s->frame.depth.w);
+    lao_v3 p = xyz(s->surface[k]), n = xyz(s->bgnormal[k]);
+    int void_style = (int)v[SDV_SETTING_ID_void_style], style = (int)v[SDV_SETTING_ID_style];
+    float facing = -lao_v3_dot(n, direction), shadow = 0, now, shown, rest = 0;
+    float tone = sdv_style_tone(facing, v[SDV_SETTING_ID_surface_ambient],
+                                v[SDV_SETTING_ID_surface_diffuse], 1);
+    float wide_u = footprint(s, s->along[0][k], n, p, direction);
+    float wide_v = footprint(s, s->across[0][k], n, p, direction);
+    float mark = marked(s, hit) ? v[SDV_SETTING_ID_mark_darkness] : 0.0f;
+    lao_v4 before = s->recalled[0][k];
+    if (!sdv_is_covered(hit.w)) {
+        tone = sdv_style_tone(facing, 0.5f, 0.5f, 1);
+        style = void_style == SDV_VOID_STIPPLE ? SDV_STYLE_STIPPLE
+                : void_style == SDV_VOID_HATCH ? SDV_STYLE_HATCH
+                                               : SDV_STYLE_PLAIN;
+    } else if (style != SDV_STYLE_PLAIN && ray && v[SDV_SETTING_ID_near_miss] < 1.5f) {
+        shadow = v[SDV_SETTING_ID_shadow_strength] *
+                 sdv_depth_shadow(normal.w, ray[k].y, ray[k].x, v[SDV_SETTING_ID_shadow_ratio],
+                                  0.01f * v[SDV_SETTING_ID_shadow_width] * s->frame.depth.z,
+                                  v[SDV_SETTING_ID_shadow_softness]);
+    }
+    now = paper(s, style, phase_of(s->uv[k]), 1 - tone, shadow, mark, wide_u, wide_v);
+    if (before.w > 0) {
+        shown = paper(s, style, phase_of(before), 1 - tone, shadow, mark, wide_u, wide_v);
+        shown = shown + before.z;
+        rest = sdv_ink_rest(shown, now, v[SDV_SETTING_ID_ink_step]);
+    }
+    return lao_v4_make(now + rest, rest, 0, 0);
+}
+
+void screen_ink(screen *s, const lao_v4 *position, const lao_v4 *normal, const lao_v4 *ray) {
+    for (uint32_t k = 0; k < texels(s, 0); k++)
+        s->ink[k] = ink(s, k, position[k], normal[k], ray);
 }

@@ -14,11 +14,15 @@ typedef struct screen {
     lao_frame_uniforms frame;
     float threshold, period, recycle, converge, set;
     int guide, sweeps;
-    const lao_v4 *cones; /* two each; for SDV_GUIDE_AXIS */
+    const lao_v4 *cones;      /* two each; for SDV_GUIDE_OWN of trees */
+    const uint8_t *colors;    /* RGBA, two each; for marks; NULL: none */
+    const float *pattern;     /* of sdv_object; NULL: none */
+    const lao_v4 *directions; /* of what is not a tree; else NULL */
     screen_pyramid depth, filled, place, facing, tensor, spread, along, across, recalled, phase,
         swept; /* scratch of the sweeps */
-    lao_v4 *surface, *bgnormal, *uv;
-    lao_v4 *surface_before, *uv_before; /* of the last frame */
+    lao_v4 *surface, *bgnormal, *uv, *ink;
+    lao_v4 *surface_before, *uv_before, *ink_before; /* of the last frame */
+    float values[SDV_SETTING_COUNT];                 /* of the void and the ink */
 } screen;
 
 /* Takes its memory and the settings' defaults; false: no memory. */
@@ -30,6 +34,8 @@ void screen_size(const screen *s, uint32_t level, uint32_t *width, uint32_t *hei
 void screen_background(screen *s, const lao_v4 *position, const lao_v4 *normal);
 void screen_guide(screen *s);
 void screen_parameterize(screen *s);
+/* Without field occlusion. ray: as traced, NULL: no depth shadows. */
+void screen_ink(screen *s, const lao_v4 *position, const lao_v4 *normal, const lao_v4 *ray);
 /* One coarse to fine run from given directions (along, across, place of all levels) alone. */
 void screen_phases(screen *s);
 /* This frame becomes the last one. */

@@ -78,7 +78,8 @@ static void flat_field(screen *s, int kind, int flips) {
 static double dot(lao_v4 a, lao_v4 b) {
     return (double)a.x * (double)b.x + (double)a.y * (double)b.y + (double)a.z * (double)b.z;
 }
-/* What is left of the energy between neighbours: RMS of the prediction's error, radians. */
+/* What is left of the energy between neighbours: RMS of the prediction's error, radians, weighted
+   as in the energy: directions at a right angle have no common sign, and count for nothing. */
 static double residual(const screen *s, const lao_v4 *phase, int v) {
     double sum = 0, n = 0, k = 2 * PI / (double)s->period;
     for (uint32_t y = 0; y < s->height; y++) {
@@ -97,8 +98,8 @@ static double residual(const screen *s, const lao_v4 *phase, int v) {
                 b = v ? (double)phase[j].y : (double)phase[j].x;
                 error =
                     turn_of(sign * b + k * 0.5 * (dot(z[i], apart) + sign * dot(z[j], apart)) - a);
-                sum += error * error;
-                n++;
+                sum += fabs(dot(z[i], z[j])) * error * error;
+                n += fabs(dot(z[i], z[j]));
             }
         }
     }
@@ -155,7 +156,7 @@ static void sheets(void **state) {
                     .z,
                 -9, 0);
     /* METHODS 6, oracle 7: a hundredth of the last frame and k = 25 */
-    assert_near(sdv_push_own(SDV_BACKGROUND_INERTIA, SDV_BACKGROUND_EXPONENT), 0.2222, 1e-4);
+    assert_near(sdv_push_own(SDV_BACKGROUND_INERTIA, 25), 0.2222, 1e-4);
     screen_free(&s);
 }
 
@@ -361,23 +362,27 @@ static void planes(void **state) {
     }
 }
 
-/* METHODS 7.3, oracle 6: what is left on a field with a centre, which u = k r solves but for the
-   pixels around it (0.009 rad). */
+/* METHODS 7.3, oracle 6: what is left on a field with a centre, which u = k r solves; the same
+   whatever the signs of its directions. The oracle's 0.30, 0.15, 0.054 rad before 16 sweeps are of
+   a push by the one-sided prediction k <z_i, p_i - p_j> (0.31, 0.07, 0.02 here), which errs by what
+   the field turns between levels. */
 static void sweeps(void **state) {
     static const int count[] = {0, 1, 4, 16};
-    static const double most[] = {0.03, 0.06, 0.05, 0.035};
+    static const double left[] = {0.0112, 0.0186, 0.0112, 0.0040};
     screen s;
     (void)state;
-    assert_true(screen_make(&s, 64, 64));
-    flat_frame(&s);
-    s.period = 8;
-    flat_field(&s, 2, 1);
-    for (int i = 0; i < 4; i++) {
-        s.sweeps = count[i];
-        screen_phases(&s);
-        assert_true(residual(&s, s.phase[0], 0) < most[i]);
+    for (int flips = 0; flips < 2; flips++) {
+        assert_true(screen_make(&s, 64, 64));
+        flat_frame(&s);
+        s.period = 8;
+        flat_field(&s, 2, flips);
+        for (int i = 0; i < 4; i++) {
+            s.sweeps = count[i];
+            screen_phases(&s);
+            assert_near(residual(&s, s.phase[0], 0), left[i], 0.001);
+        }
+        screen_free(&s);
     }
-    screen_free(&s);
 }
 
 static void traced_plane(const screen *s, lao_v4 *position, lao_v4 *normal, float dx) {
@@ -468,10 +473,10 @@ static void disocclusion(void **state) {
     assert_false(sdv_same_surface(p, n, lao_v3_make(9, 0, 0), 1));
     assert_false(sdv_same_surface(p, n, lao_v3_make(NAN, 0, 0), 1));
     /* levels: the largest with 2^l <= period / 16, at least 1 */
-    assert_true(sdv_recycle_level(-1, 16, false) == 1 && sdv_recycle_level(-1, 63, false) == 1);
-    assert_true(sdv_recycle_level(-1, 64, false) == 2 && sdv_recycle_level(-1, 1, false) == 1);
-    assert_true(sdv_recycle_level(-1, 128, false) == 3 && sdv_recycle_level(3, 16, false) == 3);
-    assert_true(sdv_recycle_level(3, 16, true) == 0);
+    assert_true(sdv_recycle_level(-1, 16, 1) == 1 && sdv_recycle_level(-1, 63, 1) == 1);
+    assert_true(sdv_recycle_level(-1, 64, 1) == 2 && sdv_recycle_level(-1, 1, 1) == 1);
+    assert_true(sdv_recycle_level(-1, 128, 1) == 3 && sdv_recycle_level(3, 16, 1) == 3);
+    assert_true(sdv_recycle_level(3, 16, 0) == 0);
     /* what is recalled turns with its guide and moves with its pixel */
     phase = sdv_phase_recall(lao_v3_make(1, 0, 0), lao_v3_make(0, 1, 0),
                              lao_v3_make(-0.5f, 0.5f, 0), phase, lao_v3_make(1, 2, 0), 0.5f);
@@ -524,6 +529,58 @@ static void ink(void **state) {
     assert_near(sdv_chromadepth(2).z, 1, 0);
 }
 
+/* Any picture is a pattern whose mean ink is the darkness, even in u and v; where it is too small
+   to be seen only its tone is left. */
+static void patterns(void **state) {
+    enum { N = 16, GRID = 160 };
+    static const double wide[] = {0.001, 0.02, 0.6};
+    vessel_host counted;
+    sdv_host host = vessel_host_make(&counted);
+    float values[N * N];
+    sdv_object object;
+    (void)state;
+    for (int i = 0; i < N * N; i++) /* stripes, and equal values too */
+        values[i] = (float)(i % N < 9 ? 3 : i / N);
+    values[5] = NAN;
+    memset(&object, 0, sizeof object);
+    assert_int_equal(sdv_object_pattern(&host, values, N, &object), LAO_ERROR_INVALID_ARGUMENT);
+    object.allocator = host.allocator;
+    object.desc.buffers = object.buffers;
+    assert_int_equal(sdv_object_pattern(&host, values, 257, &object), LAO_ERROR_INVALID_ARGUMENT);
+    assert_int_equal(sdv_object_pattern(&host, NULL, N, &object), LAO_ERROR_INVALID_ARGUMENT);
+    counted.fail_at = counted.takes + 2;
+    assert_int_equal(sdv_object_pattern(&host, values, N, &object), LAO_ERROR_OUT_OF_MEMORY);
+    assert_int_equal(counted.bytes, 0);
+    counted.fail_at = 0;
+    assert_int_equal(sdv_object_pattern(&host, values, N, &object), LAO_OK);
+    assert_true(object.pattern[0] == N && object.desc.buffer_count == 1);
+    for (int w = 0; w < 3; w++) {
+        for (int d = 0; d <= 10; d++) {
+            double sum = 0;
+            float dark = (float)d / 10, a = (float)wide[w];
+            for (int k = 0; k < GRID * GRID; k++) {
+                lao_v2 at = {(float)(2 * PI * ((k % GRID + 0.37) / GRID - 0.5)),
+                             (float)(2 * PI * ((k / GRID + 0.41) / GRID - 0.5))};
+                lao_v2 minus = {-at.x, -at.y};
+                float inked = 0, same = 0;
+                for (int i = 0; i < SDV_PATTERN_SAMPLES * SDV_PATTERN_SAMPLES; i++) {
+                    inked +=
+                        dark > object.pattern[1 + sdv_pattern_at(at, a, a, i, N)] ? 1.0f : 0.0f;
+                    same +=
+                        dark > object.pattern[1 + sdv_pattern_at(minus, a, a, i, N)] ? 1.0f : 0.0f;
+                }
+                assert_true(inked == same || k % 7);
+                sum += (double)sdv_pattern_ink(inked, dark, a, a);
+                if (w == 2)
+                    assert_near(sdv_pattern_ink(inked, dark, a, a), (double)dark, 1e-6);
+            }
+            assert_near(sum / (GRID * GRID), (double)dark, 0.02 * (double)dark + 0.002);
+        }
+    }
+    sdv_object_free(&object);
+    assert_int_equal(counted.bytes, 0);
+}
+
 /* Periods per pixel: head on they are the pixel's part of the period; tilted, more. */
 static void footprints(void **state) {
     lao_v3 x = {1, 0, 0}, y = {0, 1, 0}, down = {0, 0, -1}, n = {0, 0, 1};
@@ -535,12 +592,64 @@ static void footprints(void **state) {
     assert_true(sdv_style_footprint(down, x, x, y, down, 1, 1) <= 20.001f); /* edge-on: finite */
 }
 
+/* A mesh becomes an object, or is refused and leaves nothing behind. */
+static void meshes(void **state) {
+    static const float corners[] = {0, 0, 0, 4, 0, 0, 0, 2, 0, 0, 0, 1};
+    static const float upward[] = {0, 0, 1, 0, 0, 1, 0, 0, 1, 0, 0, 1};
+    uint32_t faces[] = {0, 1, 2, 0, 1, 3};
+    float broken[12];
+    vessel_host counted;
+    sdv_host host = vessel_host_make(&counted);
+    sdv_mesh_desc desc;
+    sdv_object object, none;
+    (void)state;
+    memset(&desc, 0, sizeof desc);
+    memset(&none, 0, sizeof none);
+    sdv_object_free(&none);
+    desc.vertex_count = 4;
+    desc.triangle_count = 2;
+    desc.positions = corners;
+    desc.normals = upward;
+    desc.triangles = faces;
+    desc.directions = corners;
+    assert_int_equal(sdv_object_mesh(&host, &desc, &object), LAO_OK);
+    assert_int_equal(object.desc.triangle_count, 2);
+    assert_true(object.desc.bounds[1][0] == 4 && object.desc.bounds[1][2] == 1);
+    sdv_object_free(&object);
+    assert_int_equal(counted.bytes, 0);
+    memset(&object, 7, sizeof object);
+    memcpy(&none, &object, sizeof none);
+    faces[5] = 4;
+    assert_int_equal(sdv_object_mesh(&host, &desc, &object), LAO_ERROR_INVALID_ARGUMENT);
+    assert_int_equal(counted.item, SDV_LOG_MESH);
+    faces[5] = 3;
+    memcpy(broken, corners, sizeof broken);
+    broken[7] = NAN;
+    desc.positions = broken;
+    assert_int_equal(sdv_object_mesh(&host, &desc, &object), LAO_ERROR_INVALID_ARGUMENT);
+    desc.positions = corners;
+    desc.triangle_count = 0;
+    assert_int_equal(sdv_object_mesh(&host, &desc, &object), LAO_ERROR_INVALID_ARGUMENT);
+    desc.triangle_count = 2;
+    desc.normals = NULL;
+    assert_int_equal(sdv_object_mesh(&host, &desc, &object), LAO_ERROR_INVALID_ARGUMENT);
+    assert_int_equal(sdv_object_drawn(&host, NULL, &object), LAO_ERROR_INVALID_ARGUMENT);
+    assert_int_equal(counted.item, SDV_LOG_NULL_ARGUMENT);
+    desc.normals = upward;
+    counted.fail_at = counted.takes + 1;
+    assert_int_equal(sdv_object_mesh(&host, &desc, &object), LAO_ERROR_OUT_OF_MEMORY);
+    assert_int_equal(counted.failures, 6);
+    assert_int_equal(counted.bytes, 0);
+    assert_memory_equal(&object, &none, sizeof object);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(sheets),       cmocka_unit_test(nothing), cmocka_unit_test(inertia),
         cmocka_unit_test(contours),     cmocka_unit_test(ball),    cmocka_unit_test(signs),
         cmocka_unit_test(planes),       cmocka_unit_test(sweeps),  cmocka_unit_test(coherence),
         cmocka_unit_test(disocclusion), cmocka_unit_test(ink),     cmocka_unit_test(footprints),
+        cmocka_unit_test(patterns),     cmocka_unit_test(meshes),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

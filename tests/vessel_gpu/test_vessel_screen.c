@@ -9,7 +9,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { WIDTH = 97, HEIGHT = 70 }; /* odd, so that no level halves evenly */
+enum { WIDTH = 49, HEIGHT = 35 }; /* odd, so that no level halves evenly */
 
 static render_device devices[2];
 static const lao_module *modules[1];
@@ -27,7 +27,7 @@ static void scene_make(scene *s, const subject *tree) {
     s->shot.height = HEIGHT;
     s->shot.set_count = 1;
     s->shot.settings[0] = &s->lines;
-    s->shot.objects[0] = &tree->object.desc;
+    s->shot.objects[0] = tree ? &tree->object.desc : NULL;
     s->settings[0] = &s->vessel;
     s->shot.module_settings[0] = s->settings;
     s->shot.background[3] = 1;
@@ -35,6 +35,8 @@ static void scene_make(scene *s, const subject *tree) {
     s->lines.supersampling = 1;
     s->vessel.parameterization = 2;
     s->vessel.ssp_period = 1.5f;
+    /* light of the ink is the surface's alone */
+    s->vessel.set = SDV_SET(field_occlusion) | SDV_SET(joint_smoothness);
     s->shot.camera = render_camera(0.3, 0.5, 0.8, 45);
     render_perspective(&s->shot.camera, 40, (double)WIDTH / HEIGHT, 1, 200);
 }
@@ -70,7 +72,7 @@ static void same_pyramid(const render_result *result, const screen *s, const cha
 
 static void screen_of(const scene *s, const subject *tree, screen *c) {
     sdv_settings v = s->vessel;
-    float values[SDV_SETTING_COUNT];
+    float *values = c->values;
     assert_true(screen_make(c, s->shot.width, s->shot.height));
     assert_int_equal(lao_settings_resolve(sdv_module(), &v, values), -1);
     c->threshold = values[SDV_SETTING_ID_guide_threshold];
@@ -79,7 +81,8 @@ static void screen_of(const scene *s, const subject *tree, screen *c) {
     c->converge = values[SDV_SETTING_ID_ssp_converge];
     c->sweeps = (int)values[SDV_SETTING_ID_ssp_sweeps];
     c->guide = (int)values[SDV_SETTING_ID_guide];
-    c->cones = tree->grid.cones;
+    c->cones = tree ? tree->grid.cones : NULL;
+    c->colors = tree ? tree->colors : NULL;
 }
 
 /* A frame of a device against C, whose `c` holds the frame before. */
@@ -105,9 +108,14 @@ static void check_frame(const scene *s, const render_result *result, screen *c) 
         if (c->sweeps % 2 == 0) /* else the two images of a level change places */
             same_pyramid(result, c, "vessel_phase", c->phase);
         same(result, "vessel_uv", 0, c->uv, n);
+        screen_ink(c, texels_of(result, "vessel_position", 0),
+                   texels_of(result, "vessel_normal", 0),
+                   c->directions ? NULL : texels_of(result, "vessel_ray", 0));
+        same(result, "vessel_ink", 0, c->ink, n);
     }
     memcpy(c->surface_before, c->surface, n * sizeof(lao_v4));
     memcpy(c->uv_before, c->uv, n * sizeof(lao_v4));
+    memcpy(c->ink_before, c->ink, n * sizeof(lao_v4));
 }
 
 static void same_image(const char *name, const render_result *a, const render_result *b) {
@@ -117,14 +125,14 @@ static void same_image(const char *name, const render_result *a, const render_re
 }
 
 /* Frames of these cameras on both devices; `last` holds the last one afterwards. */
-static void check(scene *s, const lao_camera *cameras, uint32_t count, screen *last) {
+static void check_in(scene *s, const lao_camera *cameras, uint32_t count, screen *last,
+                     lao_view views[2]) {
     for (uint32_t frame = 0; frame < count; frame++) {
         render_result results[2];
-        s->shot.before = cameras;
-        s->shot.before_count = frame;
         s->shot.camera = cameras[frame];
         for (int i = 0; i < 2; i++) {
             render_need(&devices[i]);
+            s->shot.view = &views[i];
             render_draw(&devices[i], &s->shot, &results[i]);
         }
         same_image("shaded", &results[0], &results[1]);
@@ -136,6 +144,11 @@ static void check(scene *s, const lao_camera *cameras, uint32_t count, screen *l
         render_free(&results[0]);
         render_free(&results[1]);
     }
+}
+
+static void check(scene *s, const lao_camera *cameras, uint32_t count, screen *last) {
+    lao_view views[2] = {{0}, {0}};
+    check_in(s, cameras, count, last, views);
 }
 
 static void checked(scene *s, const subject *tree, const lao_camera *cameras, uint32_t count) {
@@ -155,7 +168,7 @@ static void still_frames(void **state) {
     for (int kind = 0; kind < 5; kind++) {
         scene_make(&s, &tree);
         if (kind == 1) {
-            s.vessel.guide = SDV_GUIDE_AXIS;
+            s.vessel.guide = SDV_GUIDE_OWN;
             s.vessel.set |= SDV_SET(guide_threshold); /* 0: every slope is a contour */
             s.vessel.style = SDV_STYLE_STIPPLE;
             s.vessel.void_style = SDV_VOID_HATCH;
@@ -164,6 +177,7 @@ static void still_frames(void **state) {
             render_orthographic(&s.shot.camera, 30, (double)WIDTH / HEIGHT, 1, 200);
             render_reverse(&s.shot.camera);
             s.vessel.ssp_sweeps = 3;
+            s.vessel.void_exponent = 2;
             s.vessel.style = SDV_STYLE_LAYERED;
             s.vessel.void_style = SDV_VOID_CHROMADEPTH;
         }
@@ -207,41 +221,143 @@ static void empty_picture(void **state) {
     subject_free(&tree);
 }
 
-/* A camera that moves, rests, and rests with the solution going on. */
-static void frames(void **state) {
+/* A camera that moves and rests, and does so with the solution going on. */
+static void frames_of(int converge) {
     subject tree;
     scene s;
     screen c;
     lao_camera cameras[4];
     lao_v4 *before = malloc(WIDTH * HEIGHT * sizeof *before);
     uint32_t changed = 0;
-    (void)state;
+    lao_view views[2] = {{0}, {0}};
     assert_non_null(before);
     subject_make(&tree, 60, 1);
-    for (int converge = 0; converge < 2; converge++) {
-        scene_make(&s, &tree);
-        for (int i = 0; i < 4; i++) {
-            double angle = 0.02 * (i < 2 ? i : 2);
-            cameras[i] = render_camera(0.3 + angle, 0.5, 0.8 - angle, 45);
-            render_perspective(&cameras[i], 40, (double)WIDTH / HEIGHT, 1, 200);
-        }
-        s.vessel.ssp_converge = (float)converge;
-        screen_of(&s, &tree, &c);
-        check(&s, cameras, 3, &c);
-        memcpy(before, c.uv, WIDTH * HEIGHT * sizeof *before);
-        screen_free(&c);
-        screen_of(&s, &tree, &c);
-        check(&s, cameras, 4, &c);
-        for (uint32_t i = 0; i < WIDTH * HEIGHT; i++)
-            changed += memcmp(&before[i], &c.uv[i], sizeof *before) != 0;
-        if (converge)
-            assert_true(changed > WIDTH * HEIGHT / 4);
-        else
-            assert_int_equal(changed, 0);
-        screen_free(&c);
+    scene_make(&s, &tree);
+    for (int i = 0; i < 4; i++) {
+        double angle = 0.02 * (i < 2 ? i : 2);
+        cameras[i] = render_camera(0.3 + angle, 0.5, 0.8 - angle, 45);
+        render_perspective(&cameras[i], 40, (double)WIDTH / HEIGHT, 1, 200);
     }
+    s.vessel.ssp_converge = (float)converge;
+    s.vessel.style = SDV_STYLE_LAYERED;
+    s.vessel.void_style = SDV_VOID_HATCH;
+    screen_of(&s, &tree, &c);
+    check_in(&s, cameras, 3, &c, views);
+    memcpy(before, c.uv, WIDTH * HEIGHT * sizeof *before);
+    check_in(&s, cameras + 3, 1, &c, views);
+    for (uint32_t i = 0; i < WIDTH * HEIGHT; i++)
+        changed += memcmp(&before[i], &c.uv[i], sizeof *before) != 0;
+    if (converge)
+        assert_true(changed > WIDTH * HEIGHT / 4);
+    else
+        assert_int_equal(changed, 0);
+    screen_free(&c);
     free(before);
     subject_free(&tree);
+}
+static void frames(void **state) {
+    (void)state;
+    frames_of(0);
+}
+static void frames_that_converge(void **state) {
+    (void)state;
+    frames_of(1);
+}
+
+/* ---- what is not a tree */
+
+enum { RINGS = 24, SIDES = 32 };
+/* A closed bumpy surface whose own directions run along its rings. */
+typedef struct bump {
+    float positions[RINGS * SIDES * 3], normals[RINGS * SIDES * 3], directions[RINGS * SIDES * 3];
+    uint8_t colors[RINGS * SIDES * 4];
+    uint32_t triangles[(RINGS - 1) * SIDES * 6];
+    sdv_object object;
+} bump;
+
+static void bump_make(bump *b) {
+    sdv_mesh_desc desc;
+    uint32_t *t = b->triangles;
+    memset(&desc, 0, sizeof desc);
+    for (uint32_t i = 0; i < RINGS * SIDES; i++) {
+        double a = 3.14159265 * (i / SIDES) / (RINGS - 1), c = 6.2831853 * (i % SIDES) / SIDES;
+        double n[3] = {sin(a) * cos(c), sin(a) * sin(c), cos(a)};
+        double r = 9 + 1.5 * sin(4 * a) * cos(3 * c);
+        for (uint32_t k = 0; k < 3; k++) {
+            b->positions[3 * i + k] = (float)(r * n[k]);
+            b->normals[3 * i + k] = (float)n[k];
+        }
+        b->directions[3 * i] = (float)(-sin(c) * (i % 2 ? 1 : -1)); /* of no sign */
+        b->directions[3 * i + 1] = (float)(cos(c) * (i % 2 ? 1 : -1));
+        b->directions[3 * i + 2] = 0;
+        for (uint32_t k = 0; k < 4; k++)
+            b->colors[4 * i + k] = (uint8_t)(255 - 3 * i % 64);
+    }
+    for (uint32_t i = 0; i < (RINGS - 1) * SIDES; i++) {
+        uint32_t next = i % SIDES == SIDES - 1 ? i + 1 - SIDES : i + 1;
+        const uint32_t two[6] = {i, next, i + SIDES, next, next + SIDES, i + SIDES};
+        memcpy(t, two, sizeof two);
+        t += 6;
+    }
+    desc.vertex_count = RINGS * SIDES;
+    desc.triangle_count = (RINGS - 1) * SIDES * 2;
+    desc.positions = b->positions;
+    desc.normals = b->normals;
+    desc.directions = b->directions;
+    desc.colors = b->colors;
+    desc.triangles = b->triangles;
+    assert_int_equal(sdv_object_mesh(NULL, &desc, &b->object), LAO_OK);
+    assert_int_equal(sdv_object_pattern(NULL, b->positions, 20, &b->object), LAO_OK);
+}
+
+/* A mesh gives the same numbers everywhere, and what it drew, brought by the host as images, the
+   same picture again. */
+static void surfaces(void **state) {
+    static const char *const names[] = {"vessel_position", "vessel_normal", "vessel_color",
+                                        "vessel_direction"};
+    bump b;
+    scene s;
+    sdv_object drawn;
+    (void)state;
+    bump_make(&b);
+    scene_make(&s, NULL);
+    s.shot.objects[0] = &b.object.desc;
+    s.vessel.guide = SDV_GUIDE_OWN;
+    s.vessel.style = SDV_STYLE_PATTERN;
+    s.vessel.void_style = SDV_VOID_STIPPLE;
+    assert_int_equal(sdv_object_drawn(NULL, b.object.desc.bounds[0], &drawn), LAO_OK);
+    assert_int_equal(sdv_object_pattern(NULL, b.positions, 20, &drawn), LAO_OK);
+    for (int i = 0; i < 2; i++) {
+        render_result mesh, again;
+        render_image imports[4];
+        uint32_t covered = 0;
+        screen c;
+        render_need(&devices[i]);
+        s.shot.objects[0] = &b.object.desc;
+        s.shot.import_count = 0;
+        render_draw(&devices[i], &s.shot, &mesh);
+        screen_of(&s, NULL, &c);
+        c.pattern = b.object.pattern;
+        c.directions = texels_of(&mesh, "vessel_direction", 0);
+        check_frame(&s, &mesh, &c);
+        for (uint32_t k = 0; k < WIDTH * HEIGHT; k++)
+            covered += c.surface[k].w > 0;
+        assert_true(covered > WIDTH * HEIGHT / 8 && covered < WIDTH * HEIGHT * 7 / 8);
+        for (int k = 0; k < 4; k++)
+            imports[k] = *render_find(&mesh, names[k], 0);
+        s.shot.objects[0] = &drawn.desc;
+        s.shot.imports = imports;
+        s.shot.import_count = 4;
+        render_draw(&devices[i], &s.shot, &again);
+        same_image("vessel_uv", &mesh, &again);
+        same_image("vessel_ink", &mesh, &again);
+        same_image("shaded", &mesh, &again);
+        screen_free(&c);
+        render_free(&mesh);
+        render_free(&again);
+    }
+    sdv_object_free(&drawn);
+    sdv_object_free(&b.object);
 }
 
 /* Two trees in a view: the images are the last one's, and it recalls nothing of the other's. */
@@ -288,12 +404,17 @@ static int close_all(void **state) {
     return 0;
 }
 
-int main(void) {
-    const struct CMUnitTest tests[] = {
+/* Compiling a view's shaders is what takes time; without an argument one scene shows the most. */
+int main(int count, char **arguments) {
+    const struct CMUnitTest first[] = {cmocka_unit_test(frames)};
+    const struct CMUnitTest others[] = {
         cmocka_unit_test(still_frames),
         cmocka_unit_test(empty_picture),
-        cmocka_unit_test(frames),
+        cmocka_unit_test(frames_that_converge),
         cmocka_unit_test(two_trees),
+        cmocka_unit_test(surfaces),
     };
-    return cmocka_run_group_tests(tests, open_all, close_all);
+    (void)arguments;
+    return count > 1 ? cmocka_run_group_tests(others, open_all, close_all)
+                     : cmocka_run_group_tests(first, open_all, close_all);
 }

@@ -1,0 +1,113 @@
+/* Strokes and dots by (u, v), as the white they leave (L19 5; METHODS 7.5). What a new solution changes fades over. */
+LAO_TEX(0, sampler2D, position)
+LAO_TEX(1, sampler2D, normal)
+LAO_TEX(2, sampler2D, ray)
+LAO_TEX(3, samplerBuffer, box)
+LAO_TEX(4, samplerBuffer, cells)
+LAO_TEX(5, samplerBuffer, ids)
+LAO_TEX(6, samplerBuffer, cones)
+LAO_TEX(7, samplerBuffer, shapes) /* with variant 1 */
+LAO_TEX(8, samplerBuffer, fields)
+LAO_TEX(9, sampler2D, uv)
+LAO_TEX(10, sampler2D, surface)
+LAO_TEX(11, sampler2D, bgnormal)
+LAO_TEX(12, sampler2D, along)
+LAO_TEX(13, sampler2D, across)
+LAO_TEX(14, sampler2D, recalled)
+LAO_TEX(15, samplerBuffer, pattern) /* its size; thresholds */
+LAO_TEX(16, samplerBuffer, colors)  /* for marks */
+LAO_CONSTANT(0, lao_constant_near_miss)
+LAO_CONSTANT(1, lao_constant_field_occlusion)
+LAO_CONSTANT(2, lao_constant_style)
+LAO_CONSTANT(3, lao_constant_void_style)
+LAO_CONSTANT(4, lao_constant_variant) /* 1: with shapes; 2: not a tree */
+LAO_CONSTANT(5, lao_constant_mark_style)
+LAO_CONSTANT(6, lao_constant_field_shadow)
+
+LAO_OUT(0, vec4, out_ink) /* white that is left; the rest in it of what was shown before (sdv_ink_rest) */
+
+#ifdef LAO_FRAGMENT
+LAO_INCLUDE vessel_light.glsl
+/* Is the void marked at the pixel, close to a marked vessel? wide: periods per pixel. */
+bool has_halo(float d_min, lao_v3 near_miss, lao_v3 direction, float wide) {
+    if (lao_constant_variant == 2 || lao_constant_near_miss == SDV_NEAR_MISS_NONE || !(wide < SDV_HALO_FOOTPRINT) ||
+        !(d_min < 0.01 * lao_setting_mark_halo * lao_frame.depth.z)) {
+        return false;
+    }
+    sdv_box b = sdv_box_fetch(box);
+    vec4 cell = texelFetch(cells, sdv_cell_at(b, near_miss));
+    float cone = sdv_near_at(cells, ids, cones, b, cell, near_miss, direction).cone;
+    if (cone < 0.0) {
+        return false;
+    }
+    return is_marked(cone, near_miss);
+}
+/* White that is left by ink at these phases; mark: how much of the pixel a mark inks. */
+float paper(int style, lao_v2 phase, float dark, float shadow, float mark, float wide_u, float wide_v) {
+    float pattern_ink = 0.0;
+    if (style == SDV_STYLE_PATTERN) {
+        int n = int(texelFetch(pattern, 0).x);
+        float inked = 0.0;
+        for (int i = 0; i < SDV_PATTERN_SAMPLES * SDV_PATTERN_SAMPLES; i++) {
+            float threshold = texelFetch(pattern, 1 + sdv_pattern_at(phase, wide_u, wide_v, i, n)).x;
+            inked += dark > threshold ? 1.0 : 0.0;
+        }
+        pattern_ink = n > 0 ? sdv_pattern_ink(inked, dark, wide_u, wide_v) : 0.0;
+    }
+    LAO_EXACT float left = sdv_style_paper(style, phase, dark, shadow, wide_u, wide_v, pattern_ink);
+    if (mark > 0.0) {
+        left = left * (1.0 - sdv_style_ink(lao_constant_mark_style + SDV_STYLE_STIPPLE, phase.x, phase.y, mark, wide_u, wide_v));
+    }
+    return left;
+}
+
+void main() {
+    ivec2 pixel = LAO_PIXEL;
+    lao_v2 slope = lao_pixel_slope(lao_frame.ray, float(pixel.x) + 0.5, float(pixel.y) + 0.5);
+    lao_v3 direction = lao_ray_direction(lao_frame.world, slope, lao_frame.depth.w);
+    lao_v3 p = texelFetch(surface, pixel, 0).xyz;
+    lao_v3 n = texelFetch(bgnormal, pixel, 0).xyz;
+    vec4 hit = texelFetch(position, pixel, 0);
+    vec4 r = texelFetch(ray, pixel, 0);
+    float wide_u = sdv_footprint_at(texelFetch(along, pixel, 0).xyz, n, p, direction, lao_setting_ssp_period);
+    float wide_v = sdv_footprint_at(texelFetch(across, pixel, 0).xyz, n, p, direction, lao_setting_ssp_period);
+    int style = SDV_STYLE_PLAIN;
+    float tone = 1.0;
+    bool marked = false;
+    LAO_EXACT float shadow = 0.0;
+    if (!sdv_is_covered(hit.w)) {
+        tone = sdv_style_tone(-lao_v3_dot(n, direction), 0.5, 0.5, 1.0); /* half black where the sheet is seen edge-on */
+        if (lao_constant_void_style == SDV_VOID_STIPPLE) {
+            style = SDV_STYLE_STIPPLE;
+        } else if (lao_constant_void_style == SDV_VOID_HATCH) {
+            style = SDV_STYLE_HATCH;
+        }
+        lao_v3 origin = lao_ray_origin(lao_frame.world, slope, lao_frame.depth.w);
+        marked = has_halo(texelFetch(normal, pixel, 0).w, lao_v3_along(origin, direction, r.y), direction,
+                          lao_max(wide_u, wide_v));
+    } else {
+        if (lao_constant_variant != 2 && hit.w >= 0.0) {
+            marked = is_marked(hit.w, p);
+        }
+        style = lao_constant_style;
+        if (style != SDV_STYLE_PLAIN && style != SDV_STYLE_SHADOW) {
+            lao_v3 facing = facing_at(hit, n);
+            tone = sdv_style_tone(-lao_v3_dot(facing, direction), lao_setting_surface_ambient, lao_setting_surface_diffuse,
+                                  field_light(p, facing, r));
+        }
+        if (style != SDV_STYLE_PLAIN && lao_constant_near_miss != SDV_NEAR_MISS_NONE && lao_constant_variant != 2) {
+            shadow = lao_setting_shadow_strength * sdv_depth_shadow_at(texelFetch(normal, pixel, 0), r);
+        }
+    }
+    float mark = marked ? lao_setting_mark_darkness : 0.0;
+    vec4 before = texelFetch(recalled, pixel, 0);
+    float now = paper(style, texelFetch(uv, pixel, 0).xy, 1.0 - tone, shadow, mark, wide_u, wide_v);
+    float rest = 0.0;
+    if (before.w > 0.0) {
+        LAO_EXACT float shown = paper(style, before.xy, 1.0 - tone, shadow, mark, wide_u, wide_v) + before.z;
+        rest = sdv_ink_rest(shown, now, lao_setting_ink_step);
+    }
+    LAO_EXACT float white = now + rest;
+    out_ink = vec4(white, rest, 0.0, 0.0);
+}
+#endif
