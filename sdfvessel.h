@@ -1598,21 +1598,35 @@ LAO_FN bool sdv_is_marked(lao_v3 p, lao_v4 a, lao_v4 b, float alpha_a, float alp
     LAO_EXACT float alpha = alpha_a + sdv_cone_place(p, a, b) * (alpha_b - alpha_a);
     return alpha < 0.5f;
 }
-/* How near to a place of the surface another cone takes part in its shading normal, mm: within what
-   the cell's list is sure to hold. a, b: of the cone at p. */
-LAO_FN float sdv_joint_reach(lao_v3 p, lao_v4 a, lao_v4 b, float smoothness, float cell) {
+/* How near to a place of the surface another cone takes part in its shading normal (x, mm: within
+   what the cell's list is sure to hold), and the radius there (y). a, b: of the cone at p. */
+LAO_FN lao_v2 sdv_joint_reach(lao_v3 p, lao_v4 a, lao_v4 b, float smoothness, float cell) {
     sdv_cone_point c = sdv_cone_point_make(p, a, b);
-    LAO_EXACT float reach = smoothness * (a.w + c.place * (b.w - a.w));
-    return lao_min(reach, sdv_near_reach(cell));
+    LAO_EXACT float radius = a.w + c.place * (b.w - a.w);
+    LAO_EXACT float reach = smoothness * radius;
+    return lao_v2_make(lao_min(reach, sdv_near_reach(cell)), radius);
+}
+/* Cones as long as the radius add nothing: they are smooth where they bend outwards, and the balls
+   at their ends would tilt the normal before the joint. */
+LAO_FN float sdv_joint_part(lao_v4 a, lao_v4 b, float radius) {
+    lao_v3 axis = lao_v3_make(b.x - a.x, b.y - a.y, b.z - a.z);
+    LAO_EXACT float size = lao_sqrt(lao_v3_dot(axis, axis));
+    LAO_EXACT float part = 2.0f - 2.0f * size / radius;
+    return lao_clamp01(part);
+}
+/* What the cone at p has more than its part. */
+LAO_FN lao_v3 sdv_joint_start(lao_v3 p, lao_v4 a, lao_v4 b, lao_v2 reach) {
+    LAO_EXACT float rest = 1.0f - sdv_joint_part(a, b, reach.y);
+    return lao_v3_scale(sdv_round_cone_gradient(p, a, b), rest);
 }
 /* Adds a cone's gradient to those before, the less the farther its surface is. */
-LAO_FN lao_v3 sdv_joint_add(lao_v3 sum, lao_v3 p, lao_v4 a, lao_v4 b, float reach) {
+LAO_FN lao_v3 sdv_joint_add(lao_v3 sum, lao_v3 p, lao_v4 a, lao_v4 b, lao_v2 reach) {
     sdv_cone_point c = sdv_cone_point_make(p, a, b);
-    if (!(c.distance < reach)) {
+    if (!(c.distance < reach.x)) {
         return sum;
     }
-    LAO_EXACT float part = 1.0f - lao_max(c.distance, 0.0f) / reach;
-    LAO_EXACT float weight = part * part;
+    LAO_EXACT float part = 1.0f - lao_max(c.distance, 0.0f) / reach.x;
+    LAO_EXACT float weight = part * part * sdv_joint_part(a, b, reach.y);
     return lao_v3_along(sum, sdv_round_cone_gradient(p, a, b), weight);
 }
 /* The mean of the gradients on the side of the surface's own normal, unit. */
@@ -4588,10 +4602,13 @@ SDV_API float sdv_shadow(const sdv_grid *grid, const sdv_shapes *shapes, lao_v3 
 SDV_API lao_v3 sdv_smooth_normal(const sdv_grid *grid, lao_v3 p, uint32_t cone, lao_v3 normal,
                                  float smoothness) {
     const lao_v4 *cell = sdv__cell_at(grid, p), *own = grid->cones + 2 * (size_t)cone;
-    float reach = sdv_joint_reach(p, own[0], own[1], smoothness, grid->cell);
-    lao_v3 sum = lao_v3_make(0.0f, 0.0f, 0.0f);
+    lao_v2 reach = sdv_joint_reach(p, own[0], own[1], smoothness, grid->cell);
+    lao_v3 sum = sdv_joint_start(p, own[0], own[1], reach);
     uint32_t i;
-    for (i = 0; reach > 0.0f && i < (uint32_t)cell->w; i++) {
+    if (!(reach.x > 0.0f)) {
+        return normal;
+    }
+    for (i = 0; i < (uint32_t)cell->w; i++) {
         const lao_v4 *ends = grid->cones + 2 * (size_t)grid->ids[(size_t)cell->z + i];
         sum = sdv_joint_add(sum, p, ends[0], ends[1], reach);
     }

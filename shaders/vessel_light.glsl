@@ -27,10 +27,13 @@ float openness(sdv_box b, lao_v3 p, lao_v3 n, bool inside) {
 /* Normal for shading: sdv_smooth_normal. */
 lao_v3 smooth_normal(sdv_box b, lao_v3 p, float cone, lao_v3 n) {
     int own = 2 * int(cone);
-    float reach = sdv_joint_reach(p, texelFetch(cones, own), texelFetch(cones, own + 1), lao_setting_joint_smoothness, b.cell);
+    lao_v2 reach = sdv_joint_reach(p, texelFetch(cones, own), texelFetch(cones, own + 1), lao_setting_joint_smoothness, b.cell);
     vec4 cell = cell_fetch(sdv_cell_at(b, p));
-    int count = reach > 0.0 ? int(cell.w) : 0;
-    lao_v3 sum = lao_v3_make(0.0, 0.0, 0.0);
+    int count = int(cell.w);
+    if (!(reach.x > 0.0)) {
+        return n;
+    }
+    lao_v3 sum = sdv_joint_start(p, texelFetch(cones, own), texelFetch(cones, own + 1), reach);
     for (int i = 0; i < count; i++) {
         int at = 2 * int(id_fetch(int(cell.z) + i));
         sum = sdv_joint_add(sum, p, texelFetch(cones, at), texelFetch(cones, at + 1), reach);

@@ -423,10 +423,10 @@ static const double risk_balls[2][4] = {{8, 18, -1090, 2}, {-8, 18, -1095, 1}};
 
 /* Both backends give the same page; a column shows its own target in both views. */
 static void test_link(void **state) {
-    pixels gl, vk, one;
+    pixels gl, vk;
+    uint32_t others = 0;
     (void)state;
-    program_run run = RUN(LINK "--target 8,18,-1090,2 --target -8,18,-1095,1 -o gl.png --json "
-                               "--dump link.exr");
+    program_run run = RUN(LINK "--target 8,18,-1090,2 --target -8,18,-1095,1 -o gl.png --json");
     assert_int_equal(run.code, 0);
     cJSON *json = cJSON_Parse(run.out);
     assert_non_null(json);
@@ -442,14 +442,15 @@ static void test_link(void **state) {
     assert_int_equal(gl.width, 320);
     assert_int_equal(gl.height, 180);
     assert_int_equal(differing(&gl, &vk, 0, 0, 320, 180), 0);
-    expect_ok(RUN(LINK "--target 8,18,-1090,2 --target 8,18,-1090,2 -o one.png"));
-    read_pixels("one.png", &one);
-    assert_in_range(differing(&gl, &one, 0, 0, 155, 180), 0, 0); /* the first column is the same */
-    assert_in_range(differing(&gl, &one, 165, 20, 150, 40), 100, 6000); /* the second tree */
-    assert_in_range(differing(&gl, &one, 165, 70, 150, 40), 100, 6000); /* and its layout */
+    for (uint32_t y = 24; y < 110; y++) { /* the second column is 157 pixels to the right */
+        for (uint32_t x = 8; x < 155; x++) {
+            const uint8_t *at = gl.rgb + 3 * ((size_t)y * 320 + x);
+            others += memcmp(at, at + 3 * 157, 3) != 0;
+        }
+    }
+    assert_in_range(others, 400, 10000);
     free(gl.rgb);
     free(vk.rgb);
-    free(one.rgb);
 }
 
 /* The pattern marks what is at risk, and that alone; without a target the colours are the layout's;
@@ -460,7 +461,8 @@ static void test_risk(void **state) {
     uint32_t inside = 0, outside = 0, marked = 0;
     (void)state;
     expect_ok(RUN("vessel " Y "--target 0,-4,-1100,1 --range 0,40 --colormap gray --risk 8 "
-                  "--set ssp_period=3 --size 288x216 -o with.png --dump risk.exr"));
+                  "--set ssp_period=3 --size 288x216 -o with.png"));
+    expect_ok(RUN("vessel " Y BARE "--target 0,-4,-1100,1 --size 288x216 --dump risk.exr"));
     expect_ok(
         RUN("vessel " Y
             "--target 0,-4,-1100,1 --range 0,40 --colormap gray --size 288x216 -o without.png"));
@@ -507,8 +509,8 @@ static void test_implied(void **state) {
     image_exr exr;
     pixels plain, ink;
     (void)state;
-    expect_ok(RUN("vessel " Y "--dump on.exr -o plain.png"));
-    assert_true(image_read_exr("on.exr", &exr, NULL));
+    expect_ok(RUN("vessel " Y "-o plain.png"));
+    assert_true(image_read_exr("gl.exr", &exr, NULL)); /* test_dump's */
     assert_non_null(image_exr_channel(&exr, "uv.U", NULL));
     assert_non_null(image_exr_channel(&exr, "guide.X", NULL));
     assert_non_null(image_exr_channel(&exr, "bgposition.Z", NULL));
@@ -521,7 +523,7 @@ static void test_implied(void **state) {
     for (size_t i = 0; i < sizeof inks / sizeof *inks; i++) {
         expect_ok(RUN("vessel " Y "-o ink.png --style %s --shadow-width 9", inks[i]));
         read_pixels("ink.png", &ink);
-        assert_in_range(differing(&plain, &ink, 0, 0, 96, 72), i == 4 ? 1 : 50, 96 * 72);
+        assert_in_range(differing(&plain, &ink, 0, 0, 96, 72), i == 1 ? 1 : 50, 96 * 72);
         free(ink.rgb);
     }
     free(plain.rgb);
