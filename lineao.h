@@ -2730,7 +2730,9 @@ static int lao__check_names(const lao_graph *graph, char *text, size_t size) {
         }
     }
     if (graph->buffer_count > LAO_MAX_BUFFERS) {
-        return lao__fault(text, size, "the modules have more than 16 buffers%s%s", "", "");
+        char most[16];
+        snprintf(most, sizeof most, "%d", (int)LAO_MAX_BUFFERS);
+        return lao__fault(text, size, "the modules have more than %s buffers%s", most, "");
     }
     for (i = 0; i < graph->buffer_count; i++) {
         for (k = 0; k < i; k++) {
