@@ -22,6 +22,7 @@ static const char *viewer, *program; /* paths */
 
 typedef struct fixture {
     const char *backend;
+    char folder[32]; /* of this run alone */
     desktop *desktop;
 } fixture;
 
@@ -299,14 +300,15 @@ static void shows_lines(void **state) {
 /* ---- all of it ----------------------------------------------------------------------------- */
 
 static int set_up(void **state) {
-    char folder[] = "view_XXXXXX", cache[1024];
+    char cache[1024];
     fixture *f = *state;
     f->desktop = desktop_start();
     if (!f->desktop) {
         print_error("Xvfb cannot be started; ./run setup installs it\n");
         return -1;
     }
-    if (!mkdtemp(folder) || chdir(folder) != 0 || !getcwd(cache, sizeof cache))
+    strcpy(f->folder, "view_XXXXXX");
+    if (!mkdtemp(f->folder) || chdir(f->folder) != 0 || !getcwd(cache, sizeof cache))
         return -1;
     setenv("MESA_SHADER_CACHE_DISABLE", "false", 1); /* of this run alone */
     setenv("MESA_SHADER_CACHE_DIR", cache, 1);
@@ -321,6 +323,10 @@ static int clean_up(void **state) {
 
 static int tear_down(void **state) {
     fixture *f = *state;
+    char line[64];
+    snprintf(line, sizeof line, "cd .. && rm -rf '%s'", f->folder);
+    if (system(line) != 0)
+        print_error("%s stays\n", f->folder);
     desktop_stop(f->desktop);
     return 0;
 }
@@ -330,7 +336,7 @@ int main(int argc, char **argv) {
         fprintf(stderr, "usage: test_view VIEWER LINEAO gl|vk [NAME]\n");
         return 2;
     }
-    fixture f = {argv[3], NULL};
+    fixture f = {argv[3], "", NULL};
     viewer = argv[1];
     program = argv[2];
     const struct CMUnitTest tests[] = {
