@@ -14,7 +14,7 @@ cd "$(dirname "$0")"
 # Shaders by module; a module's header is where its shared text is.
 MODULES="lines vessel surface"
 lines_shaders="fullscreen import_depth export_depth cover lines lines_rim lines_halo level_zero level_one level_up occlusion smooth shade resolve present"
-vessel_shaders="vessel_trace vessel_carve vessel_mesh vessel_depth vessel_pull vessel_fill vessel_surface vessel_gather vessel_guide vessel_recall vessel_recall_up vessel_phase vessel_sweep vessel_uv vessel_ink vessel_shade"
+vessel_shaders="vessel_lists vessel_sum vessel_start vessel_words vessel_rows vessel_columns vessel_grid vessel_trace vessel_carve vessel_mesh vessel_depth vessel_pull vessel_fill vessel_surface vessel_gather vessel_guide vessel_recall vessel_recall_up vessel_phase vessel_sweep vessel_uv vessel_ink vessel_shade"
 vessel_header="sdfvessel.h"
 surface_shaders="surface_measure surface_mesh surface_nearest surface_layers surface_shadow surface_effect surface_focus surface_blur"
 surface_header="vesselsurface.h"
@@ -33,6 +33,9 @@ header_of() {
         surface) echo "$surface_header" ;;
     esac
 }
+
+# First words of frequent instructions (OpLoad, OpStore, ...): macros of two letters make lineao_shaders.h a sixth shorter.
+WORDS="262205 196670 262203 196679 327745 131320 196663 262187 327813 327809 131321 131326 393281 327734 327752 262394 262215 262176 196855 393273 65592 327811"
 
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT INT TERM
@@ -107,7 +110,15 @@ spirv() {
         --eliminate-local-single-store --eliminate-local-multi-store --eliminate-dead-code-aggressive \
         --eliminate-dead-const --compact-ids -o "$work/$1.$3.spv" "$work/$1.$3.spv" ||
         die "spirv-opt refuses shaders/$1.glsl as $2"
-    od -An -v -tu4 -w64 "$work/$1.$3.spv" | sed 's/^ *//; s/  */,/g; s/$/,/' >"$work/$1.$3.words"
+    od -An -v -tu4 -w64 "$work/$1.$3.spv" | awk -v words="$WORDS" '
+        BEGIN {n = split(words, word, " "); for (i = 1; i <= n; i++) short[word[i]] = sprintf("w%c", 96 + i)}
+        {for (i = 1; i <= NF; i++) printf "%s,", $i in short ? short[$i] : $i; print ""}' >"$work/$1.$3.words"
+}
+
+word_macros() { # define|undef
+    printf '#ifdef LINEAO_SHADERS_SPIRV\n'
+    printf '%s\n' $WORDS | awk -v what="$1" '{printf "#%s w%c%s\n", what, 96 + NR, what == "define" ? " " $1 : ""}'
+    printf '#endif\n'
 }
 
 names() { # second and further arguments of a macro: names MACRO file
@@ -210,11 +221,13 @@ END
         printf '};\n'
     done
     printf '#endif\n'
+    word_macros define
     for module in $MODULES; do
         for shader in $(shaders_of "$module"); do
             make_shader "$shader"
         done
     done
+    word_macros undef
     printf '\nstatic const lao_shader lao_shaders[] = {\n'
     cat "$work/rows"
     printf '};\nstatic const uint32_t lao_shader_count = (uint32_t)(sizeof lao_shaders / sizeof lao_shaders[0]);\n\n'

@@ -76,6 +76,8 @@ extern "C" {
     X(GRID_LISTS, LAO_ERROR_INVALID_ARGUMENT,                                                      \
       "more than 2^24 segments or entries of cell lists; fewer cells make shorter lists")          \
     X(GRID_TREE, LAO_ERROR_INVALID_ARGUMENT, "the grid was built from another tree")               \
+    X(GRID_DEVICE, LAO_OK,                                                                         \
+      "the lists of this field may not fit the device's images: the CPU builds it")                \
     X(SHAPES, LAO_ERROR_INVALID_ARGUMENT,                                                          \
       "a tree takes at most 64 shapes, of finite numbers, whose samples exist")                    \
     X(MESH, LAO_ERROR_INVALID_ARGUMENT,                                                            \
@@ -560,16 +562,18 @@ SDV_API void sdv_camera_margin(const lao_camera *camera, uint32_t width, uint32_
 /* Passes, images and settings that draw trees among a scene's lines. Static. Thread: any. */
 SDV_API const lao_module *sdv_module(void);
 
-/* A grid as the object of a set. `desc` refers to the struct itself and to the grid's arrays: it
-   must not move, and both must live until lao_object_create or _update returns. */
+/* A tree's field as the object of a set. `desc` refers to the struct itself and to the grid's
+   arrays: it must not move, and both must live until lao_object_create or _update returns. */
 typedef struct sdv_object {
     lao_object_desc desc;
     lao_object_buffer buffers[8];
     lao_v4 box[2];
     lao_v4 shapes[1 + 4 * SDV_MOST_SHAPES];
-    float *pattern; /* private, as what follows */
+    uint32_t on_device;  /* sdv_object_make_tree: 1 when the device builds the field */
+    sdv_grid grid;       /* of sdv_object_make_tree; on_device: its box and cones, no cells */
+    uint32_t image_size; /* private, like what follows */
+    float *pattern;
     void *memory;
-    size_t size;
     lao_allocator allocator;
 } sdv_object;
 
@@ -598,6 +602,21 @@ SDV_API lao_result sdv_object_make(const sdv_host *host, const sdv_grid *grid,
    referred to. Fails with NULL_ARGUMENT, SHAPES. */
 SDV_API lao_result sdv_object_shapes(const sdv_host *host, const sdv_shapes *shapes,
                                      const float *colors, sdv_object *object);
+/* The same for a tree whose nodes may change every frame: only its cones are uploaded, and rows of
+   the module build the field on the device, anew in every frame and to the same bits as
+   sdv_grid_build in the same box (its cells are the image "vessel_grid", its ids the first texels
+   of "vessel_lists"). `image_size`: lao_limits.image_size. The images are sized by a bound of what
+   the lists can hold; where that is more than 2^24 or than the device's images hold, GRID_DEVICE is
+   logged and the CPU builds the grid (on_device is 0): the host need not care. `desc` and `colors`
+   as in sdv_grid_build and sdv_object_make. Fails like those. */
+SDV_API lao_result sdv_object_make_tree(const sdv_host *host, const sdv_tree *tree,
+                                        const sdv_grid_desc *desc, uint32_t image_size,
+                                        const uint8_t *colors, sdv_object *object);
+/* After the host changed tree->nodes[nodes[i]], i < count: `desc` is then what lao_object_update
+   takes. The box stays while the tree is inside. Fails like sdv_grid_update, with the object as
+   before. */
+SDV_API lao_result sdv_object_move(const sdv_host *host, const sdv_tree *tree,
+                                   const uint32_t *nodes, uint32_t count, sdv_object *object);
 /* Describes a mesh for lao_object_create, with copies of all it needs. Free with sdv_object_free.
    Fails with NULL_ARGUMENT, MESH, MEMORY. */
 SDV_API lao_result sdv_object_mesh(const sdv_host *host, const sdv_mesh_desc *desc,
@@ -755,6 +774,30 @@ LAO_FN lao_int sdv_cell_at(sdv_box box, lao_v3 p) {
 /* What a cell lists: cones up to this distance from its centre, mm. */
 LAO_FN float sdv_list_reach(float cell) {
     return 2.0f * cell;
+}
+/* The device builds the lists of cells from those of blocks, at most SDV_BLOCKS along an axis,
+   those from lists of regions, SDV_REGION blocks along an axis, and those from chunks of SDV_CHUNK
+   cones. The list of a block is made in SDV_BLOCK_PARTS parts. A grid has at most SDV_AXIS cells
+   along an axis. */
+#define SDV_BLOCKS 32
+#define SDV_REGION 6
+#define SDV_CHUNK 32
+#define SDV_BLOCK_PARTS 8
+#define SDV_AXIS 512
+/* The middle of the cells from `low` to `last`, and (w) how far a cone that one of them lists may
+   be from there. Distances are 1-Lipschitz; the margin is for rounding. */
+LAO_FN lao_v4 sdv_block_reach(sdv_box box, lao_v3 low, lao_v3 last) {
+    lao_v3 middle = lao_v3_scale(lao_v3_add(low, last), 0.5f);
+    lao_v3 apart = lao_v3_sub(last, middle);
+    LAO_EXACT float x = box.origin.x + (middle.x + 0.5f) * box.cell;
+    LAO_EXACT float y = box.origin.y + (middle.y + 0.5f) * box.cell;
+    LAO_EXACT float z = box.origin.z + (middle.z + 0.5f) * box.cell;
+    LAO_EXACT float most = lao_abs(box.origin.x) + lao_abs(box.origin.y) + lao_abs(box.origin.z) +
+                           (box.size.x + box.size.y + box.size.z) * box.cell;
+    LAO_EXACT float reach = sdv_list_reach(box.cell) +
+                            lao_sqrt(lao_v3_dot(apart, apart)) * box.cell + 0.02f * box.cell +
+                            1.0e-5f * most;
+    return lao_v4_make(x, y, z, reach);
 }
 /* From anywhere in a cell, what is nearer than this is in its list: 2 - sqrt(3) / 2, less rounding.
  */
@@ -3367,7 +3410,7 @@ static int sdv__run(sdv__work *work, uint32_t count, void (*fn)(void *arg, uint3
 /* ================================================================================================
  * grid */
 
-enum { SDV__AXIS = 512 };    /* most cells along an axis */
+enum { SDV__AXIS = SDV_AXIS };
 #define SDV__EXACT 16777216u /* floats count to here */
 
 static sdv_box sdv__grid_box(const sdv_grid *g) {
@@ -4201,10 +4244,11 @@ static lao_result sdv__grid_renew(const sdv_host *host, const sdv_tree *tree, sd
     return result;
 }
 
-SDV_API lao_result sdv_grid_update(const sdv_host *host, const sdv_tree *tree,
-                                   const uint32_t *nodes, uint32_t count, sdv_grid *grid) {
+/* Is it the tree of the grid, and are the nodes its own? */
+static lao_result sdv__grid_fits(const sdv_host *host, const sdv_tree *tree, const uint32_t *nodes,
+                                 uint32_t count, const sdv_grid *grid) {
     uint32_t i;
-    if (!tree || !grid || (count && !nodes) || !tree->memory || !grid->cells) {
+    if (!tree || !grid || (count && !nodes) || !tree->memory || !grid->cones) {
         return sdv__fail(host, SDV_LOG_NULL_ARGUMENT, "sdv_grid_update");
     }
     for (i = 0; i < count; i++) {
@@ -4212,13 +4256,21 @@ SDV_API lao_result sdv_grid_update(const sdv_host *host, const sdv_tree *tree,
             return sdv__fail(host, SDV_LOG_GRID_TREE, "node %u of %u", nodes[i], tree->node_count);
         }
     }
-    if (grid->cone_count != tree->segment_count + sdv__lone_count(tree)) {
-        return sdv__fail(host, SDV_LOG_GRID_TREE, NULL);
+    return grid->cone_count == tree->segment_count + sdv__lone_count(tree)
+               ? LAO_OK
+               : sdv__fail(host, SDV_LOG_GRID_TREE, NULL);
+}
+SDV_API lao_result sdv_grid_update(const sdv_host *host, const sdv_tree *tree,
+                                   const uint32_t *nodes, uint32_t count, sdv_grid *grid) {
+    lao_result result = sdv__grid_fits(host, tree, nodes, count, grid);
+    if (result == LAO_OK && !grid->cells) {
+        result = sdv__fail(host, SDV_LOG_NULL_ARGUMENT, "sdv_grid_update");
     }
-    if (!sdv__grid_holds(grid, tree)) {
-        return sdv__grid_renew(host, tree, grid);
+    if (result != LAO_OK) {
+        return result;
     }
-    return sdv__grid_change(host, tree, nodes, count, grid);
+    return sdv__grid_holds(grid, tree) ? sdv__grid_change(host, tree, nodes, count, grid)
+                                       : sdv__grid_renew(host, tree, grid);
 }
 
 /* ---- reading */
@@ -5064,11 +5116,14 @@ SDV_API lao_result sdv_pull_push(const sdv_host *host, const sdv_pull_push_desc 
 #define SDV__WITH_BACKGROUND {{"#vessel_box", '>', 0}, SDV__BACKGROUND}
 #define SDV__WITH_PHASES {{"#vessel_box", '>', 0}, SDV__PARAMETERIZED}
 /* a tree, one with shapes, and what is only seen: a mesh, a surface that the host drew */
-#define SDV__TREE {"#vessel_cells", '>', 0}, {"#vessel_shapes", '=', 0}
-#define SDV__SHAPES {"#vessel_cells", '>', 0}, {"#vessel_shapes", '>', 0}
-#define SDV__SEEN {"#vessel_box", '>', 0}, {"#vessel_cells", '=', 0}
+#define SDV__TREE {"#vessel_cones", '>', 0}, {"#vessel_shapes", '=', 0}
+#define SDV__SHAPES {"#vessel_cones", '>', 0}, {"#vessel_shapes", '>', 0}
+#define SDV__SEEN {"#vessel_box", '>', 0}, {"#vessel_cones", '=', 0}
 #define SDV__WITH_TREE {SDV__TREE}
 #define SDV__WITH_SHAPES {SDV__SHAPES}
+/* sdv_object_make_tree: the object has no cells of its own */
+#define SDV__BY_DEVICE {"#vessel_cells", '=', 0}
+#define SDV__WITH_CONES_ONLY {{"#vessel_cones", '>', 0}, SDV__BY_DEVICE}
 
 static const lao_buffer_row sdv__buffers[] = {
     {"vessel_box", LAO_FORMAT_RGBA32F}, {"vessel_cells", LAO_FORMAT_RGBA32F}, {"vessel_ids", LAO_FORMAT_R32F},
@@ -5078,7 +5133,29 @@ static const lao_buffer_row sdv__buffers[] = {
     {"vessel_pattern", LAO_FORMAT_R32F}
 };
 
+/* Kinds of items of the images below: lao_object_desc.further_items[kind - 1]. */
+enum {
+    SDV__CELLS = 1, SDV__REGION_PARTS, SDV__REGION_ENTRIES, SDV__BLOCK_PARTS, SDV__BLOCK_ENTRIES, SDV__ENTRIES, SDV__WORDS
+};
+
 static const lao_image_row sdv__images[] = {
+    /* the field that the device builds; of pyramids of sums, levels down to one texel */
+    {"vessel_region_counts", LAO_FORMAT_R32F, LAO_SIZE_ITEMS, SDV__REGION_PARTS, 0, "*", 0, LAO_ENCODING_PLAIN, {0, 0, 0, 0}, SDV__BY_DEVICE, {NULL, NULL, NULL, NULL}},
+    {"vessel_region_masks", LAO_FORMAT_R32UI, LAO_SIZE_ITEMS, SDV__REGION_PARTS, 0, NULL, 0, LAO_ENCODING_PLAIN, {0, 0, 0, 0}, SDV__BY_DEVICE, {NULL, NULL, NULL, NULL}},
+    {"vessel_region_starts", LAO_FORMAT_R32F, LAO_SIZE_ITEMS, SDV__REGION_PARTS, 0, "*", 0, LAO_ENCODING_PLAIN, {0, 0, 0, 0}, SDV__BY_DEVICE, {NULL, NULL, NULL, NULL}},
+    {"vessel_region_cones", LAO_FORMAT_R32F, LAO_SIZE_ITEMS, SDV__REGION_ENTRIES, 0, NULL, 0, LAO_ENCODING_PLAIN, {0, 0, 0, 0}, SDV__BY_DEVICE, {NULL, NULL, NULL, NULL}},
+    {"vessel_block_counts", LAO_FORMAT_R32F, LAO_SIZE_ITEMS, SDV__BLOCK_PARTS, 0, "*", 0, LAO_ENCODING_PLAIN, {0, 0, 0, 0}, SDV__BY_DEVICE, {NULL, NULL, NULL, NULL}},
+    {"vessel_block_masks", LAO_FORMAT_R32UI, LAO_SIZE_ITEMS, SDV__BLOCK_PARTS, 0, NULL, 0, LAO_ENCODING_PLAIN, {0, 0, 0, 0}, SDV__BY_DEVICE, {NULL, NULL, NULL, NULL}},
+    {"vessel_block_starts", LAO_FORMAT_R32F, LAO_SIZE_ITEMS, SDV__BLOCK_PARTS, 0, "*", 0, LAO_ENCODING_PLAIN, {0, 0, 0, 0}, SDV__BY_DEVICE, {NULL, NULL, NULL, NULL}},
+    {"vessel_block_cones", LAO_FORMAT_R32F, LAO_SIZE_ITEMS, SDV__BLOCK_ENTRIES, 0, NULL, 0, LAO_ENCODING_PLAIN, {0, 0, 0, 0}, SDV__BY_DEVICE, {NULL, NULL, NULL, NULL}},
+    {"vessel_counts", LAO_FORMAT_R32F, LAO_SIZE_ITEMS, SDV__CELLS, 0, "*", 0, LAO_ENCODING_PLAIN, {0, 0, 0, 0}, SDV__BY_DEVICE, {NULL, NULL, NULL, NULL}},
+    {"vessel_masks", LAO_FORMAT_R32UI, LAO_SIZE_ITEMS, SDV__CELLS, 0, NULL, 0, LAO_ENCODING_PLAIN, {0, 0, 0, 0}, SDV__BY_DEVICE, {NULL, NULL, NULL, NULL}},
+    {"vessel_starts", LAO_FORMAT_R32F, LAO_SIZE_ITEMS, SDV__CELLS, 0, "*", 0, LAO_ENCODING_PLAIN, {0, 0, 0, 0}, SDV__BY_DEVICE, {NULL, NULL, NULL, NULL}},
+    {"vessel_lists", LAO_FORMAT_R32F, LAO_SIZE_ITEMS, SDV__ENTRIES, 0, NULL, 0, LAO_ENCODING_PLAIN, {0, 0, 0, 0}, SDV__BY_DEVICE, {NULL, NULL, NULL, NULL}},
+    {"vessel_words", LAO_FORMAT_R32UI, LAO_SIZE_ITEMS, SDV__WORDS, 0, NULL, 0, LAO_ENCODING_PLAIN, {0, 0, 0, 0}, SDV__BY_DEVICE, {NULL, NULL, NULL, NULL}},
+    {"vessel_nearest_x", LAO_FORMAT_R32F, LAO_SIZE_ITEMS, SDV__CELLS, 0, NULL, 0, LAO_ENCODING_PLAIN, {0, 0, 0, 0}, SDV__BY_DEVICE, {NULL, NULL, NULL, NULL}},
+    {"vessel_nearest_xy", LAO_FORMAT_R32F, LAO_SIZE_ITEMS, SDV__CELLS, 0, NULL, 0, LAO_ENCODING_PLAIN, {0, 0, 0, 0}, SDV__BY_DEVICE, {NULL, NULL, NULL, NULL}},
+    {"vessel_grid", LAO_FORMAT_RGBA32F, LAO_SIZE_ITEMS, SDV__CELLS, 0, NULL, 0, LAO_ENCODING_PLAIN, {0, 0, 0, 0}, SDV__BY_DEVICE, {NULL, NULL, NULL, NULL}},
     {"vessel_position", LAO_FORMAT_RGBA32F, LAO_SIZE_FULL, 0, 0, NULL, 0, LAO_ENCODING_PLAIN, {0, 0, 0, -1}, {NULL, 0, 0}, {"position.X", "position.Y", "position.Z", "segment.V"}},
     {"vessel_normal",   LAO_FORMAT_RGBA32F, LAO_SIZE_FULL, 0, 0, NULL, 0, LAO_ENCODING_PLAIN, {0, 0, 0, 0},  {NULL, 0, 0}, {"normal.X", "normal.Y", "normal.Z", "dmin.V"}},
     {"vessel_ray",      LAO_FORMAT_RGBA32F, LAO_SIZE_FULL, 0, 0, NULL, 0, LAO_ENCODING_PLAIN, {0, 0, 0, 0},  {NULL, 0, 0}, {NULL, NULL, NULL, NULL}},
@@ -5103,12 +5180,70 @@ static const lao_image_row sdv__images[] = {
 };
 
 static const lao_pass_row sdv__passes[] = {
+    /* the field from cones alone: lists of regions, blocks and cells, then the nearest cell that has one */
+    {"vessel_region_counts", LAO_PASS_FULLSCREEN, "vessel_lists", 0, LAO_STAGE_DRAW, LAO_SCOPE_PER_SET, LAO_REPEAT_NONE, NULL, LAO_BLEND_NONE, LAO_DEPTH_NONE, LAO_CULL_NONE, SDV__WITH_CONES_ONLY,
+     {SDV__WRITE("vessel_region_counts"), SDV__WRITE("vessel_region_masks")},
+     {SDV__READ("#vessel_box"), SDV__READ("#vessel_cones")}},
+    {"vessel_region_sums", LAO_PASS_FULLSCREEN, "vessel_sum", 0, LAO_STAGE_DRAW, LAO_SCOPE_PER_SET, LAO_REPEAT_LEVELS_UP, NULL, LAO_BLEND_NONE, LAO_DEPTH_NONE, LAO_CULL_NONE, SDV__WITH_CONES_ONLY,
+     {SDV__WRITE("vessel_region_counts")},
+     {SDV__FINER("vessel_region_counts")}},
+    {"vessel_region_top", LAO_PASS_FULLSCREEN, "vessel_start", 1, LAO_STAGE_DRAW, LAO_SCOPE_PER_SET, LAO_REPEAT_NONE, NULL, LAO_BLEND_NONE, LAO_DEPTH_NONE, LAO_CULL_NONE, SDV__WITH_CONES_ONLY,
+     {SDV__TOP("vessel_region_starts")},
+     {SDV__TOP("vessel_region_counts")}},
+    {"vessel_region_starts", LAO_PASS_FULLSCREEN, "vessel_start", 0, LAO_STAGE_DRAW, LAO_SCOPE_PER_SET, LAO_REPEAT_LEVELS_DOWN, NULL, LAO_BLEND_NONE, LAO_DEPTH_NONE, LAO_CULL_NONE, SDV__WITH_CONES_ONLY,
+     {SDV__WRITE("vessel_region_starts")},
+     {SDV__COARSER("vessel_region_starts"), SDV__READ("vessel_region_counts")}},
+    {"vessel_region_cones", LAO_PASS_FULLSCREEN, "vessel_lists", 1, LAO_STAGE_DRAW, LAO_SCOPE_PER_SET, LAO_REPEAT_NONE, NULL, LAO_BLEND_NONE, LAO_DEPTH_NONE, LAO_CULL_NONE, SDV__WITH_CONES_ONLY,
+     {SDV__WRITE("vessel_region_cones")},
+     {SDV__READ("#vessel_box"), SDV__READ("#vessel_cones"), SDV__READ("vessel_region_starts"), SDV__READ("vessel_region_starts"), SDV__READ("vessel_region_starts"), SDV__READ("vessel_region_masks")}},
+    {"vessel_block_counts", LAO_PASS_FULLSCREEN, "vessel_lists", 2, LAO_STAGE_DRAW, LAO_SCOPE_PER_SET, LAO_REPEAT_NONE, NULL, LAO_BLEND_NONE, LAO_DEPTH_NONE, LAO_CULL_NONE, SDV__WITH_CONES_ONLY,
+     {SDV__WRITE("vessel_block_counts"), SDV__WRITE("vessel_block_masks")},
+     {SDV__READ("#vessel_box"), SDV__READ("#vessel_cones"), SDV__READ("vessel_region_starts"), SDV__READ("vessel_region_cones")}},
+    {"vessel_block_sums", LAO_PASS_FULLSCREEN, "vessel_sum", 0, LAO_STAGE_DRAW, LAO_SCOPE_PER_SET, LAO_REPEAT_LEVELS_UP, NULL, LAO_BLEND_NONE, LAO_DEPTH_NONE, LAO_CULL_NONE, SDV__WITH_CONES_ONLY,
+     {SDV__WRITE("vessel_block_counts")},
+     {SDV__FINER("vessel_block_counts")}},
+    {"vessel_block_top", LAO_PASS_FULLSCREEN, "vessel_start", 1, LAO_STAGE_DRAW, LAO_SCOPE_PER_SET, LAO_REPEAT_NONE, NULL, LAO_BLEND_NONE, LAO_DEPTH_NONE, LAO_CULL_NONE, SDV__WITH_CONES_ONLY,
+     {SDV__TOP("vessel_block_starts")},
+     {SDV__TOP("vessel_block_counts")}},
+    {"vessel_block_starts", LAO_PASS_FULLSCREEN, "vessel_start", 0, LAO_STAGE_DRAW, LAO_SCOPE_PER_SET, LAO_REPEAT_LEVELS_DOWN, NULL, LAO_BLEND_NONE, LAO_DEPTH_NONE, LAO_CULL_NONE, SDV__WITH_CONES_ONLY,
+     {SDV__WRITE("vessel_block_starts")},
+     {SDV__COARSER("vessel_block_starts"), SDV__READ("vessel_block_counts")}},
+    {"vessel_block_cones", LAO_PASS_FULLSCREEN, "vessel_lists", 3, LAO_STAGE_DRAW, LAO_SCOPE_PER_SET, LAO_REPEAT_NONE, NULL, LAO_BLEND_NONE, LAO_DEPTH_NONE, LAO_CULL_NONE, SDV__WITH_CONES_ONLY,
+     {SDV__WRITE("vessel_block_cones")},
+     {SDV__READ("#vessel_box"), SDV__READ("#vessel_cones"), SDV__READ("vessel_region_starts"), SDV__READ("vessel_region_cones"), SDV__READ("vessel_block_starts"), SDV__READ("vessel_block_masks")}},
+    {"vessel_counts", LAO_PASS_FULLSCREEN, "vessel_lists", 4, LAO_STAGE_DRAW, LAO_SCOPE_PER_SET, LAO_REPEAT_NONE, NULL, LAO_BLEND_NONE, LAO_DEPTH_NONE, LAO_CULL_NONE, SDV__WITH_CONES_ONLY,
+     {SDV__WRITE("vessel_counts"), SDV__WRITE("vessel_masks")},
+     {SDV__READ("#vessel_box"), SDV__READ("#vessel_cones"), SDV__READ("vessel_block_starts"), SDV__READ("vessel_block_cones")}},
+    {"vessel_sums", LAO_PASS_FULLSCREEN, "vessel_sum", 0, LAO_STAGE_DRAW, LAO_SCOPE_PER_SET, LAO_REPEAT_LEVELS_UP, NULL, LAO_BLEND_NONE, LAO_DEPTH_NONE, LAO_CULL_NONE, SDV__WITH_CONES_ONLY,
+     {SDV__WRITE("vessel_counts")},
+     {SDV__FINER("vessel_counts")}},
+    {"vessel_top", LAO_PASS_FULLSCREEN, "vessel_start", 1, LAO_STAGE_DRAW, LAO_SCOPE_PER_SET, LAO_REPEAT_NONE, NULL, LAO_BLEND_NONE, LAO_DEPTH_NONE, LAO_CULL_NONE, SDV__WITH_CONES_ONLY,
+     {SDV__TOP("vessel_starts")},
+     {SDV__TOP("vessel_counts")}},
+    {"vessel_starts", LAO_PASS_FULLSCREEN, "vessel_start", 0, LAO_STAGE_DRAW, LAO_SCOPE_PER_SET, LAO_REPEAT_LEVELS_DOWN, NULL, LAO_BLEND_NONE, LAO_DEPTH_NONE, LAO_CULL_NONE, SDV__WITH_CONES_ONLY,
+     {SDV__WRITE("vessel_starts")},
+     {SDV__COARSER("vessel_starts"), SDV__READ("vessel_counts")}},
+    {"vessel_lists", LAO_PASS_FULLSCREEN, "vessel_lists", 5, LAO_STAGE_DRAW, LAO_SCOPE_PER_SET, LAO_REPEAT_NONE, NULL, LAO_BLEND_NONE, LAO_DEPTH_NONE, LAO_CULL_NONE, SDV__WITH_CONES_ONLY,
+     {SDV__WRITE("vessel_lists")},
+     {SDV__READ("#vessel_box"), SDV__READ("#vessel_cones"), SDV__READ("vessel_block_starts"), SDV__READ("vessel_block_cones"), SDV__READ("vessel_starts"), SDV__READ("vessel_masks")}},
+    {"vessel_words", LAO_PASS_FULLSCREEN, "vessel_words", 0, LAO_STAGE_DRAW, LAO_SCOPE_PER_SET, LAO_REPEAT_NONE, NULL, LAO_BLEND_NONE, LAO_DEPTH_NONE, LAO_CULL_NONE, SDV__WITH_CONES_ONLY,
+     {SDV__WRITE("vessel_words")},
+     {SDV__READ("#vessel_box"), SDV__READ("vessel_counts")}},
+    {"vessel_rows", LAO_PASS_FULLSCREEN, "vessel_rows", 0, LAO_STAGE_DRAW, LAO_SCOPE_PER_SET, LAO_REPEAT_NONE, NULL, LAO_BLEND_NONE, LAO_DEPTH_NONE, LAO_CULL_NONE, SDV__WITH_CONES_ONLY,
+     {SDV__WRITE("vessel_nearest_x")},
+     {SDV__READ("#vessel_box"), SDV__READ("vessel_words")}},
+    {"vessel_columns", LAO_PASS_FULLSCREEN, "vessel_columns", 0, LAO_STAGE_DRAW, LAO_SCOPE_PER_SET, LAO_REPEAT_NONE, NULL, LAO_BLEND_NONE, LAO_DEPTH_NONE, LAO_CULL_NONE, SDV__WITH_CONES_ONLY,
+     {SDV__WRITE("vessel_nearest_xy")},
+     {SDV__READ("#vessel_box"), SDV__READ("vessel_nearest_x")}},
+    {"vessel_grid", LAO_PASS_FULLSCREEN, "vessel_grid", 0, LAO_STAGE_DRAW, LAO_SCOPE_PER_SET, LAO_REPEAT_NONE, NULL, LAO_BLEND_NONE, LAO_DEPTH_NONE, LAO_CULL_NONE, SDV__WITH_CONES_ONLY,
+     {SDV__WRITE("vessel_grid")},
+     {SDV__READ("#vessel_box"), SDV__READ("#vessel_cones"), SDV__READ("vessel_counts"), SDV__READ("vessel_starts"), SDV__READ("vessel_lists"), SDV__READ("vessel_nearest_xy")}},
     {"vessel_trace", LAO_PASS_FULLSCREEN, "vessel_trace", 0, LAO_STAGE_DRAW, LAO_SCOPE_PER_SET, LAO_REPEAT_NONE, NULL, LAO_BLEND_NONE, LAO_DEPTH_NONE, LAO_CULL_NONE, SDV__WITH_TREE,
      {SDV__WRITE("vessel_position"), SDV__WRITE("vessel_normal"), SDV__WRITE("vessel_ray")},
-     {SDV__READ("#vessel_box"), SDV__READ("#vessel_cells"), SDV__READ("#vessel_ids"), SDV__READ("#vessel_cones")}},
+     {SDV__READ("#vessel_box"), SDV__READ("#vessel_cells"), SDV__READ("#vessel_ids"), SDV__READ("#vessel_cones"), SDV__READ("vessel_grid"), SDV__READ("vessel_lists")}},
     {"vessel_carve", LAO_PASS_FULLSCREEN, "vessel_carve", 0, LAO_STAGE_DRAW, LAO_SCOPE_PER_SET, LAO_REPEAT_NONE, NULL, LAO_BLEND_NONE, LAO_DEPTH_NONE, LAO_CULL_NONE, SDV__WITH_SHAPES,
      {SDV__WRITE("vessel_position"), SDV__WRITE("vessel_normal"), SDV__WRITE("vessel_ray")},
-     {SDV__READ("#vessel_box"), SDV__READ("#vessel_cells"), SDV__READ("#vessel_ids"), SDV__READ("#vessel_cones"), SDV__READ("#vessel_shapes"), SDV__READ("#vessel_fields")}},
+     {SDV__READ("#vessel_box"), SDV__READ("#vessel_cells"), SDV__READ("#vessel_ids"), SDV__READ("#vessel_cones"), SDV__READ("#vessel_shapes"), SDV__READ("#vessel_fields"), SDV__READ("vessel_grid"), SDV__READ("vessel_lists")}},
     {"vessel_mesh", LAO_PASS_DRAW_MESH, "vessel_mesh", 0, LAO_STAGE_DRAW, LAO_SCOPE_PER_SET, LAO_REPEAT_NONE, NULL, LAO_BLEND_NONE, LAO_DEPTH_NEARER, LAO_CULL_NONE, {{"#vessel_triangles", '>', 0}},
      {SDV__CLEAR("vessel_position"), SDV__CLEAR("vessel_normal"), SDV__CLEAR("vessel_color"), SDV__CLEAR("vessel_direction"), SDV__CLEAR("vessel_z")},
      {SDV__READ("#vessel_vertices"), SDV__READ("#vessel_triangles"), SDV__READ("#vessel_colors")}},
@@ -5125,7 +5260,7 @@ static const lao_pass_row sdv__passes[] = {
     {"vessel_fill", LAO_PASS_FULLSCREEN, "vessel_fill", 0, LAO_STAGE_SHADE, LAO_SCOPE_PER_SET, LAO_REPEAT_LEVELS_DOWN, NULL, LAO_BLEND_NONE, LAO_DEPTH_NONE, LAO_CULL_NONE, SDV__WITH_BACKGROUND,
      {SDV__WRITE("vessel_filled")},
      {SDV__READ("vessel_depth"), SDV__COARSER("vessel_filled")}},
-    {"vessel_surface", LAO_PASS_FULLSCREEN, "vessel_surface", 0, LAO_STAGE_SHADE, LAO_SCOPE_PER_SET, LAO_REPEAT_NONE, NULL, LAO_BLEND_NONE, LAO_DEPTH_NONE, LAO_CULL_NONE, {{"#vessel_cells", '>', 0}, SDV__BACKGROUND},
+    {"vessel_surface", LAO_PASS_FULLSCREEN, "vessel_surface", 0, LAO_STAGE_SHADE, LAO_SCOPE_PER_SET, LAO_REPEAT_NONE, NULL, LAO_BLEND_NONE, LAO_DEPTH_NONE, LAO_CULL_NONE, {{"#vessel_cones", '>', 0}, SDV__BACKGROUND},
      {SDV__WRITE("vessel_surface"), SDV__WRITE("vessel_bgnormal"), SDV__WRITE("vessel_place"), SDV__WRITE("vessel_facing"), SDV__WRITE("vessel_tensor")},
      {SDV__READ("vessel_filled"), SDV__READ("vessel_depth"), SDV__READ("vessel_position"), SDV__READ("vessel_normal"), SDV__READ("#vessel_cones"), SDV__READ("vessel_normal")}},
     {"vessel_surface_seen", LAO_PASS_FULLSCREEN, "vessel_surface", 1, LAO_STAGE_SHADE, LAO_SCOPE_PER_SET, LAO_REPEAT_NONE, NULL, LAO_BLEND_NONE, LAO_DEPTH_NONE, LAO_CULL_NONE, {SDV__SEEN, SDV__BACKGROUND},
@@ -5169,37 +5304,40 @@ static const lao_pass_row sdv__passes[] = {
      {SDV__READ("vessel_position"), SDV__READ("vessel_normal"), SDV__READ("vessel_ray"),
       SDV__READ("#vessel_box"), SDV__READ("#vessel_cells"), SDV__READ("#vessel_ids"), SDV__READ("#vessel_cones"),
       SDV__READ("#vessel_shapes"), SDV__READ("#vessel_fields"), SDV__READ("vessel_uv"), SDV__READ("vessel_surface"),
-      SDV__READ("vessel_bgnormal"), SDV__READ("vessel_along"), SDV__READ("vessel_across"), SDV__READ("vessel_recalled"), SDV__READ("#vessel_pattern"), SDV__READ("#vessel_colors")}},
+      SDV__READ("vessel_bgnormal"), SDV__READ("vessel_along"), SDV__READ("vessel_across"), SDV__READ("vessel_recalled"), SDV__READ("#vessel_pattern"), SDV__READ("#vessel_colors"),
+      SDV__READ("vessel_grid"), SDV__READ("vessel_lists")}},
     {"vessel_ink_cut", LAO_PASS_FULLSCREEN, "vessel_ink", 1, LAO_STAGE_SHADE, LAO_SCOPE_PER_SET, LAO_REPEAT_NONE, NULL, LAO_BLEND_NONE, LAO_DEPTH_NONE, LAO_CULL_NONE, {SDV__SHAPES, SDV__PARAMETERIZED},
      {SDV__WRITE("vessel_ink")},
      {SDV__READ("vessel_position"), SDV__READ("vessel_normal"), SDV__READ("vessel_ray"),
       SDV__READ("#vessel_box"), SDV__READ("#vessel_cells"), SDV__READ("#vessel_ids"), SDV__READ("#vessel_cones"),
       SDV__READ("#vessel_shapes"), SDV__READ("#vessel_fields"), SDV__READ("vessel_uv"), SDV__READ("vessel_surface"),
-      SDV__READ("vessel_bgnormal"), SDV__READ("vessel_along"), SDV__READ("vessel_across"), SDV__READ("vessel_recalled"), SDV__READ("#vessel_pattern"), SDV__READ("#vessel_colors")}},
+      SDV__READ("vessel_bgnormal"), SDV__READ("vessel_along"), SDV__READ("vessel_across"), SDV__READ("vessel_recalled"), SDV__READ("#vessel_pattern"), SDV__READ("#vessel_colors"),
+      SDV__READ("vessel_grid"), SDV__READ("vessel_lists")}},
     {"vessel_ink_seen", LAO_PASS_FULLSCREEN, "vessel_ink", 2, LAO_STAGE_SHADE, LAO_SCOPE_PER_SET, LAO_REPEAT_NONE, NULL, LAO_BLEND_NONE, LAO_DEPTH_NONE, LAO_CULL_NONE, {SDV__SEEN, SDV__PARAMETERIZED},
      {SDV__WRITE("vessel_ink")},
      {SDV__READ("vessel_position"), SDV__READ("vessel_normal"), SDV__READ("vessel_normal"),
       SDV__READ("#vessel_box"), SDV__READ("#vessel_cells"), SDV__READ("#vessel_ids"), SDV__READ("#vessel_cones"),
       SDV__READ("#vessel_shapes"), SDV__READ("#vessel_fields"), SDV__READ("vessel_uv"), SDV__READ("vessel_surface"),
-      SDV__READ("vessel_bgnormal"), SDV__READ("vessel_along"), SDV__READ("vessel_across"), SDV__READ("vessel_recalled"), SDV__READ("#vessel_pattern"), SDV__READ("#vessel_colors")}},
+      SDV__READ("vessel_bgnormal"), SDV__READ("vessel_along"), SDV__READ("vessel_across"), SDV__READ("vessel_recalled"), SDV__READ("#vessel_pattern"), SDV__READ("#vessel_colors"),
+      SDV__READ("vessel_grid"), SDV__READ("vessel_lists")}},
     {"vessel_shade", LAO_PASS_FULLSCREEN, "vessel_shade", 0, LAO_STAGE_SHADE, LAO_SCOPE_PER_SET, LAO_REPEAT_NONE, NULL, LAO_BLEND_NONE, LAO_DEPTH_NEARER, LAO_CULL_NONE, SDV__WITH_TREE,
      {SDV__KEEP("shaded"), SDV__KEEP("zbuffer")},
      {SDV__READ("vessel_position"), SDV__READ("vessel_normal"), SDV__READ("vessel_ray"), SDV__READ("#vessel_colors"),
       SDV__READ("#vessel_box"), SDV__READ("#vessel_cells"), SDV__READ("#vessel_ids"), SDV__READ("#vessel_cones"),
       SDV__READ("#vessel_shapes"), SDV__READ("#vessel_fields"),
-      SDV__READ("vessel_surface"), SDV__READ("vessel_bgnormal"), SDV__READ("vessel_ink"), SDV__READ("vessel_normal")}},
+      SDV__READ("vessel_surface"), SDV__READ("vessel_bgnormal"), SDV__READ("vessel_ink"), SDV__READ("vessel_normal"), SDV__READ("vessel_grid"), SDV__READ("vessel_lists")}},
     {"vessel_shade_cut", LAO_PASS_FULLSCREEN, "vessel_shade", 1, LAO_STAGE_SHADE, LAO_SCOPE_PER_SET, LAO_REPEAT_NONE, NULL, LAO_BLEND_NONE, LAO_DEPTH_NEARER, LAO_CULL_NONE, SDV__WITH_SHAPES,
      {SDV__KEEP("shaded"), SDV__KEEP("zbuffer")},
      {SDV__READ("vessel_position"), SDV__READ("vessel_normal"), SDV__READ("vessel_ray"), SDV__READ("#vessel_colors"),
       SDV__READ("#vessel_box"), SDV__READ("#vessel_cells"), SDV__READ("#vessel_ids"), SDV__READ("#vessel_cones"),
       SDV__READ("#vessel_shapes"), SDV__READ("#vessel_fields"),
-      SDV__READ("vessel_surface"), SDV__READ("vessel_bgnormal"), SDV__READ("vessel_ink"), SDV__READ("vessel_normal")}},
+      SDV__READ("vessel_surface"), SDV__READ("vessel_bgnormal"), SDV__READ("vessel_ink"), SDV__READ("vessel_normal"), SDV__READ("vessel_grid"), SDV__READ("vessel_lists")}},
     {"vessel_shade_seen", LAO_PASS_FULLSCREEN, "vessel_shade", 2, LAO_STAGE_SHADE, LAO_SCOPE_PER_SET, LAO_REPEAT_NONE, NULL, LAO_BLEND_NONE, LAO_DEPTH_NEARER, LAO_CULL_NONE, {SDV__SEEN},
      {SDV__KEEP("shaded"), SDV__KEEP("zbuffer")},
      {SDV__READ("vessel_position"), SDV__READ("vessel_normal"), SDV__READ("vessel_normal"), SDV__READ("#vessel_colors"),
       SDV__READ("#vessel_box"), SDV__READ("#vessel_cells"), SDV__READ("#vessel_ids"), SDV__READ("#vessel_cones"),
       SDV__READ("#vessel_shapes"), SDV__READ("#vessel_fields"),
-      SDV__READ("vessel_surface"), SDV__READ("vessel_bgnormal"), SDV__READ("vessel_ink"), SDV__READ("vessel_color")}}
+      SDV__READ("vessel_surface"), SDV__READ("vessel_bgnormal"), SDV__READ("vessel_ink"), SDV__READ("vessel_color"), SDV__READ("vessel_grid"), SDV__READ("vessel_lists")}}
 };
 
 static const lao_setting_row sdv__settings[] = {
@@ -5235,51 +5373,43 @@ SDV_API const lao_module *sdv_module(void) {
     return &sdv__module;
 }
 
-/* row: of sdv__buffers */
-static void sdv__object_buffer_of(sdv_object *object, uint32_t index, uint32_t row,
-                                  const void *data, uint32_t count) {
-    object->buffers[index].name = sdv__buffers[row].name;
-    object->buffers[index].data = data;
-    object->buffers[index].texel_count = count;
-}
-static void sdv__object_buffer(sdv_object *object, uint32_t index, const void *data,
+/* Gives the object a buffer, in place of the one of that name. */
+static void sdv__object_buffer(sdv_object *object, const char *name, const void *data,
                                uint32_t count) {
-    sdv__object_buffer_of(object, index, index, data, count);
+    uint32_t i = 0;
+    while (i < object->desc.buffer_count && strcmp(object->buffers[i].name, name) != 0) {
+        i++;
+    }
+    object->buffers[i].name = name;
+    object->buffers[i].data = data;
+    object->buffers[i].texel_count = count;
+    object->desc.buffers = object->buffers;
+    object->desc.buffer_count += i == object->desc.buffer_count;
 }
 
-SDV_API lao_result sdv_object_make(const sdv_host *host, const sdv_grid *grid,
-                                   const uint8_t *colors, sdv_object *object) {
-    static const uint8_t coral[4] = {226, 106, 92, 255};
-    lao_allocator allocator = sdv__allocator(host);
-    uint8_t *own = NULL;
-    size_t i, size = 8 * (size_t)(grid ? grid->cone_count : 0);
+static void sdv__object_drop(sdv_object *object, const char *name) {
+    uint32_t i, kept = 0;
+    for (i = 0; i < object->desc.buffer_count; i++) {
+        if (strcmp(object->buffers[i].name, name) != 0) {
+            object->buffers[kept++] = object->buffers[i];
+        }
+    }
+    object->desc.buffer_count = kept;
+}
+
+/* Box, cones, and the lists where there are any. */
+static void sdv__object_grid(sdv_object *object, const sdv_grid *grid) {
+    size_t i;
     int k;
-    if (!grid || !object || !grid->cells || !grid->cone_count) {
-        return sdv__fail(host, SDV_LOG_NULL_ARGUMENT, "sdv_object_make");
-    }
-    if (!colors) {
-        own = (uint8_t *)allocator.allocate(allocator.user, size);
-        if (!own) {
-            return sdv__fail(host, SDV_LOG_MEMORY, "colours of cones");
-        }
-        for (i = 0; i < size; i++) {
-            own[i] = coral[i % 4];
-        }
-    }
-    memset(object, 0, sizeof *object);
-    object->allocator = allocator;
-    object->memory = own;
-    object->size = size;
     object->box[0] = lao_v4_make(grid->origin.x, grid->origin.y, grid->origin.z, grid->cell);
     object->box[1] = lao_v4_make((float)grid->size[0], (float)grid->size[1], (float)grid->size[2],
                                  (float)grid->cone_count);
-    sdv__object_buffer(object, 0, object->box, 2);
-    sdv__object_buffer(object, 1, grid->cells, grid->cell_count);
-    sdv__object_buffer(object, 2, grid->ids, grid->id_count);
-    sdv__object_buffer(object, 3, grid->cones, 2 * grid->cone_count);
-    sdv__object_buffer(object, 4, own ? own : colors, 2 * grid->cone_count);
-    object->desc.buffers = object->buffers;
-    object->desc.buffer_count = 5;
+    sdv__object_buffer(object, "vessel_box", object->box, 2);
+    if (grid->cells) {
+        sdv__object_buffer(object, "vessel_cells", grid->cells, grid->cell_count);
+        sdv__object_buffer(object, "vessel_ids", grid->ids, grid->id_count);
+    }
+    sdv__object_buffer(object, "vessel_cones", grid->cones, 2 * grid->cone_count);
     object->desc.item_count = grid->cone_count;
     for (i = 0; i < grid->cone_count * (size_t)2; i++) {
         const lao_v4 *ball = &grid->cones[i];
@@ -5290,7 +5420,267 @@ SDV_API lao_result sdv_object_make(const sdv_host *host, const sdv_grid *grid,
             object->desc.bounds[1][k] = i ? lao_max(object->desc.bounds[1][k], high) : high;
         }
     }
+}
+
+/* The host's colours of cones, or coral for all. 0: no memory. */
+static int sdv__object_colors(sdv_object *object, const uint8_t *colors, uint32_t cone_count) {
+    static const uint8_t coral[4] = {226, 106, 92, 255};
+    size_t i, size = 8 * (size_t)cone_count;
+    if (!colors) {
+        uint8_t *own = (uint8_t *)sdv__take(&object->allocator, size, 1);
+        if (!own) {
+            return 0;
+        }
+        for (i = 0; i < size; i++) {
+            own[i] = coral[i % 4];
+        }
+        object->memory = own;
+        colors = own;
+    }
+    sdv__object_buffer(object, "vessel_colors", colors, 2 * cone_count);
+    return 1;
+}
+
+SDV_API lao_result sdv_object_make(const sdv_host *host, const sdv_grid *grid,
+                                   const uint8_t *colors, sdv_object *object) {
+    if (!grid || !object || !grid->cells || !grid->cone_count) {
+        return sdv__fail(host, SDV_LOG_NULL_ARGUMENT, "sdv_object_make");
+    }
+    memset(object, 0, sizeof *object);
+    object->allocator = sdv__allocator(host);
+    sdv__object_grid(object, grid);
+    return sdv__object_colors(object, colors, grid->cone_count)
+               ? LAO_OK
+               : sdv__fail(host, SDV_LOG_MEMORY, "colours of cones");
+}
+
+/* ---- built by the device */
+/* Cells along an axis to a block of the lists; as the shader has it. */
+static uint32_t sdv__block_edge(const sdv_grid *g) {
+    uint32_t k, most = 0;
+    for (k = 0; k < 3; k++) {
+        most = g->size[k] > most ? g->size[k] : most;
+    }
+    return (most + SDV_BLOCKS - 1) / SDV_BLOCKS;
+}
+/* Blocks (or regions) of so many cells along an axis, all of them. */
+static double sdv__blocks(const sdv_grid *g, uint32_t edge) {
+    double n = 1;
+    uint32_t k;
+    for (k = 0; k < 3; k++) {
+        n *= (double)((g->size[k] + edge - 1) / edge);
+    }
+    return n;
+}
+/* Most cells that list a cone: those in its box with the reach of lists around it, and no more than
+   the volume that their own volumes reach into. */
+static double sdv__most_cells(const sdv_grid *g, const lao_v4 *cone) {
+    sdv__raster r = sdv__raster_make(g, cone);
+    const double t[2] = {0, 1};
+    double cells = 1, length = 0, radius = (r.ra > r.rb ? r.ra : r.rb) / (double)g->cell + 0.8661;
+    uint32_t range[2];
+    int k;
+    for (k = 0; k < 3; k++) {
+        double d = (r.b[k] - r.a[k]) / (double)g->cell;
+        sdv__raster_range(g, &r, k, t, range);
+        cells *= range[1] > range[0] ? (double)(range[1] - range[0]) : 0.0;
+        length += d * d;
+    }
+    length = 3.1416 * radius * radius * (sqrt(length) + 4.0 / 3.0 * radius) + 1.0;
+    return cells < length ? cells : length;
+}
+/* Most blocks of so many cells that list it: those whose middles are in its box with their reach
+   around it. The last along an axis may be smaller, and its middle lower. */
+static double sdv__most_blocks(const sdv_grid *g, const lao_v4 *cone, uint32_t edge) {
+    const float *a = &cone[0].x, *b = &cone[1].x, *origin = &g->origin.x;
+    lao_v3 last = lao_v3_make(1, 1, 1);
+    double blocks = 1, size = (double)edge * (double)g->cell, reach;
+    uint32_t k;
+    last = lao_v3_scale(last, (float)(edge - 1));
+    reach = 1.01 * (double)sdv_block_reach(sdv__grid_box(g), lao_v3_make(0, 0, 0), last).w;
+    for (k = 0; k < 3; k++) {
+        double n = (double)((g->size[k] + edge - 1) / edge);
+        double low = (double)lao_min(a[k] - cone[0].w, b[k] - cone[1].w) - reach;
+        double high = (double)lao_max(a[k] + cone[0].w, b[k] + cone[1].w) + reach;
+        low = ceil((low - (double)origin[k]) / size - 0.5);
+        high = floor((high - (double)origin[k]) / size - 0.5);
+        low = low > 0 ? low : 0;
+        high = high >= n - 2 ? n - 1 : high;
+        blocks *= high >= low ? high - low + 1 : 0;
+    }
+    return blocks;
+}
+/* Room for a little more, so that not every move makes a new plan: in steps of 1/8. */
+static double sdv__roomy(double n) {
+    double step = 1;
+    while (8 * step < n) {
+        step *= 2;
+    }
+    return step * ceil(n / step);
+}
+/* Sizes the images of items; 0: the device cannot hold them. Nothing shrinks. */
+static int sdv__device_items(const sdv_grid *g, uint32_t image_size, uint32_t *items) {
+    double count[LAO_FURTHER_ITEMS + 1] = {0}; /* by kind */
+    uint32_t i, edge = sdv__block_edge(g);
+    for (i = 0; i < g->cone_count; i++) {
+        const lao_v4 *cone = g->cones + 2 * (size_t)i;
+        count[SDV__REGION_ENTRIES] += sdv__most_blocks(g, cone, edge * SDV_REGION);
+        count[SDV__BLOCK_ENTRIES] += sdv__most_blocks(g, cone, edge);
+        count[SDV__ENTRIES] += sdv__most_cells(g, cone);
+    }
+    count[SDV__REGION_ENTRIES] = sdv__roomy(count[SDV__REGION_ENTRIES]);
+    count[SDV__BLOCK_ENTRIES] = sdv__roomy(count[SDV__BLOCK_ENTRIES]);
+    count[SDV__ENTRIES] = sdv__roomy(count[SDV__ENTRIES]);
+    /* one more of each holds the sum */
+    count[SDV__REGION_PARTS] =
+        sdv__blocks(g, edge * SDV_REGION) * ceil((double)g->cone_count / SDV_CHUNK) + 1;
+    count[SDV__BLOCK_PARTS] = sdv__blocks(g, edge) * SDV_BLOCK_PARTS + 1;
+    count[SDV__CELLS] = (double)g->cell_count + 1;
+    count[SDV__WORDS] = ceil(g->size[0] / 32.0) * g->size[1] * g->size[2];
+    for (i = 0; i < LAO_FURTHER_ITEMS; i++) {
+        double n = count[i + 1];
+        if (image_size < LAO_ITEMS_WIDTH || n > SDV__EXACT ||
+            n > (double)LAO_ITEMS_WIDTH * image_size) {
+            return 0;
+        }
+    }
+    for (i = 0; i < LAO_FURTHER_ITEMS; i++) {
+        items[i] = count[i + 1] > items[i] ? (uint32_t)count[i + 1] : items[i];
+    }
+    return 1;
+}
+
+/* A grid's box and cones, without its cells. */
+static lao_result sdv__grid_cones(const sdv_host *host, const sdv_tree *tree,
+                                  const sdv_grid_desc *desc, sdv_grid *g) {
+    memset(g, 0, sizeof *g);
+    g->allocator = sdv__allocator(host);
+    g->cone_count = tree->segment_count + sdv__lone_count(tree);
+    if (g->cone_count > SDV__EXACT) {
+        return sdv__fail(host, SDV_LOG_GRID_LISTS, "%u segments", g->cone_count);
+    }
+    if (!sdv__grid_frame(tree, desc, g)) {
+        return sdv__fail(host, SDV_LOG_GRID_CELLS, "%u x %u x %u", g->size[0], g->size[1],
+                         g->size[2]);
+    }
+    g->cones = (lao_v4 *)sdv__take(&g->allocator, 2 * (uint64_t)g->cone_count, sizeof *g->cones);
+    g->cone_nodes =
+        (uint32_t *)sdv__take(&g->allocator, 2 * (uint64_t)g->cone_count, sizeof *g->cone_nodes);
+    if (!g->cones || !g->cone_nodes) {
+        sdv_grid_free(g);
+        return sdv__fail(host, SDV_LOG_MEMORY, "a grid's %u cones", g->cone_count);
+    }
+    sdv__cones_fill(tree, g);
     return LAO_OK;
+}
+/* Cells for a grid that has its box and cones. On failure the grid is as before. */
+static lao_result sdv__grid_complete(const sdv_host *host, const sdv_tree *tree, sdv_grid *grid) {
+    sdv_grid_desc same;
+    sdv_grid built;
+    lao_result result;
+    memset(&same, 0, sizeof same);
+    same.origin = &grid->origin.x;
+    same.cell = grid->cell;
+    memcpy(same.size, grid->size, sizeof same.size);
+    result = sdv_grid_build(host, tree, &same, &built);
+    if (result == LAO_OK) {
+        sdv_grid_free(grid);
+        *grid = built;
+    }
+    return result;
+}
+/* Who builds the field of the grid: the device if it can, else the CPU, here. */
+static lao_result sdv__object_field(const sdv_host *host, const sdv_tree *tree, sdv_grid *grid,
+                                    sdv_object *object) {
+    uint32_t items[LAO_FURTHER_ITEMS];
+    lao_result result = LAO_OK;
+    int fits;
+    memcpy(items, object->desc.further_items, sizeof items);
+    fits = sdv__device_items(grid, object->image_size, items);
+    if (!fits) {
+        (void)sdv__fail(host, SDV_LOG_GRID_DEVICE, "%u cells, %u segments", grid->cell_count,
+                        grid->cone_count);
+        result = sdv__grid_complete(host, tree, grid);
+    }
+    if (result == LAO_OK) {
+        object->on_device = (uint32_t)fits;
+        memcpy(object->desc.further_items, items, sizeof items);
+    }
+    return result;
+}
+
+SDV_API lao_result sdv_object_make_tree(const sdv_host *host, const sdv_tree *tree,
+                                        const sdv_grid_desc *desc, uint32_t image_size,
+                                        const uint8_t *colors, sdv_object *object) {
+    sdv_grid_desc standard;
+    lao_result result;
+    memset(&standard, 0, sizeof standard);
+    if (!tree || !object || !tree->memory) {
+        return sdv__fail(host, SDV_LOG_NULL_ARGUMENT, "sdv_object_make_tree");
+    }
+    memset(object, 0, sizeof *object);
+    object->allocator = sdv__allocator(host);
+    object->image_size = image_size;
+    result = sdv__grid_cones(host, tree, desc ? desc : &standard, &object->grid);
+    if (result == LAO_OK) {
+        result = sdv__object_field(host, tree, &object->grid, object);
+    }
+    if (result == LAO_OK) {
+        sdv__object_grid(object, &object->grid);
+        if (!sdv__object_colors(object, colors, object->grid.cone_count)) {
+            result = sdv__fail(host, SDV_LOG_MEMORY, "colours of cones");
+        }
+    }
+    if (result != LAO_OK) {
+        sdv_object_free(object);
+    }
+    return result;
+}
+
+/* The cones of the tree as it is now, and a new box where it has left the old one. */
+static lao_result sdv__object_renew(const sdv_host *host, const sdv_tree *tree,
+                                    sdv_object *object) {
+    const sdv_grid *old = &object->grid;
+    sdv_grid_desc desc;
+    sdv_grid grid;
+    lao_result result;
+    uint32_t k;
+    memset(&desc, 0, sizeof desc);
+    if (sdv__grid_holds(old, tree)) {
+        desc.origin = &old->origin.x;
+        desc.cell = old->cell;
+        memcpy(desc.size, old->size, sizeof desc.size);
+    }
+    desc.resolution = 16;
+    for (k = 0; k < 3; k++) {
+        desc.resolution = old->size[k] > desc.resolution ? old->size[k] : desc.resolution;
+    }
+    result = sdv__grid_cones(host, tree, &desc, &grid);
+    if (result == LAO_OK) {
+        result = sdv__object_field(host, tree, &grid, object);
+        sdv_grid_free(result == LAO_OK ? &object->grid : &grid);
+    }
+    if (result == LAO_OK) {
+        object->grid = grid;
+    }
+    return result;
+}
+
+SDV_API lao_result sdv_object_move(const sdv_host *host, const sdv_tree *tree,
+                                   const uint32_t *nodes, uint32_t count, sdv_object *object) {
+    lao_result result;
+    if (!object || !object->grid.cones) {
+        return sdv__fail(host, SDV_LOG_NULL_ARGUMENT, "sdv_object_move");
+    }
+    result = sdv__grid_fits(host, tree, nodes, count, &object->grid);
+    if (result == LAO_OK) {
+        result = object->on_device ? sdv__object_renew(host, tree, object)
+                                   : sdv_grid_update(host, tree, nodes, count, &object->grid);
+    }
+    if (result == LAO_OK) {
+        sdv__object_grid(object, &object->grid);
+    }
+    return result;
 }
 
 static bool sdv__shape_fits(const sdv_shape *s, uint32_t field_count) {
@@ -5342,11 +5732,11 @@ SDV_API lao_result sdv_object_shapes(const sdv_host *host, const sdv_shapes *sha
             to[3] = lao_v4_make(c[0], c[1], c[2], c[0] < 0.0f ? 0.0f : 1.0f);
         }
     }
-    sdv__object_buffer(object, 5, object->shapes, 1 + 4 * shapes->count);
-    object->desc.buffer_count = 6;
+    sdv__object_buffer(object, "vessel_shapes", object->shapes, 1 + 4 * shapes->count);
     if (shapes->field_count) {
-        sdv__object_buffer(object, 6, shapes->fields, shapes->field_count);
-        object->desc.buffer_count = 7;
+        sdv__object_buffer(object, "vessel_fields", shapes->fields, shapes->field_count);
+    } else {
+        sdv__object_drop(object, "vessel_fields");
     }
     return LAO_OK;
 }
@@ -5395,9 +5785,7 @@ SDV_API lao_result sdv_object_drawn(const sdv_host *host, const float *bounds, s
     memset(object, 0, sizeof *object);
     object->allocator = sdv__allocator(host);
     memcpy(object->desc.bounds, bounds, sizeof object->desc.bounds);
-    sdv__object_buffer(object, 0, object->box, 2);
-    object->desc.buffers = object->buffers;
-    object->desc.buffer_count = 1;
+    sdv__object_buffer(object, "vessel_box", object->box, 2);
     return LAO_OK;
 }
 
@@ -5418,25 +5806,23 @@ SDV_API lao_result sdv_object_mesh(const sdv_host *host, const sdv_mesh_desc *de
     }
     size = (3 * (size_t)desc->vertex_count + desc->triangle_count) * sizeof *memory +
            4 * (size_t)desc->vertex_count;
-    memory = (lao_v4 *)allocator.allocate(allocator.user, size);
+    memory = (lao_v4 *)sdv__take(&allocator, size, 1);
     if (!memory) {
         return sdv__fail(host, SDV_LOG_MEMORY, "a mesh of %u vertices", desc->vertex_count);
     }
     if (!sdv__mesh_fill(desc, memory, memory + 3 * (size_t)desc->vertex_count,
                         (uint8_t *)(memory + 3 * (size_t)desc->vertex_count + desc->triangle_count),
                         bounds)) {
-        allocator.release(allocator.user, memory, size);
+        sdv__give(&allocator, memory);
         return sdv__fail(host, SDV_LOG_MESH, NULL);
     }
     sdv_object_drawn(host, bounds[0], object);
     object->memory = memory;
-    object->size = size;
     object->desc.triangle_count = desc->triangle_count;
-    object->desc.buffer_count = 4;
-    sdv__object_buffer_of(object, 1, 7, memory, 3 * desc->vertex_count);
+    sdv__object_buffer(object, "vessel_vertices", memory, 3 * desc->vertex_count);
     memory += 3 * (size_t)desc->vertex_count;
-    sdv__object_buffer_of(object, 2, 8, memory, desc->triangle_count);
-    sdv__object_buffer_of(object, 3, 4, memory + desc->triangle_count, desc->vertex_count);
+    sdv__object_buffer(object, "vessel_triangles", memory, desc->triangle_count);
+    sdv__object_buffer(object, "vessel_colors", memory + desc->triangle_count, desc->vertex_count);
     return LAO_OK;
 }
 
@@ -5482,18 +5868,16 @@ SDV_API lao_result sdv_object_pattern(const sdv_host *host, const float *values,
     }
     sdv__give(&a, greys);
     object->pattern = pattern;
-    sdv__object_buffer_of(object, object->desc.buffer_count++, 9, pattern, count + 1);
+    sdv__object_buffer(object, "vessel_pattern", pattern, count + 1);
     return LAO_OK;
 }
 
 SDV_API void sdv_object_free(sdv_object *object) {
-    if (object && object->pattern) {
+    if (object && object->allocator.release) {
         sdv__give(&object->allocator, object->pattern);
-        object->pattern = NULL;
-    }
-    if (object && object->memory) {
-        object->allocator.release(object->allocator.user, object->memory, object->size);
-        object->memory = NULL;
+        sdv__give(&object->allocator, object->memory);
+        sdv_grid_free(&object->grid);
+        memset(object, 0, sizeof *object);
     }
 }
 

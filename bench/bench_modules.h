@@ -4,6 +4,8 @@
  *   floor_taps     32 + 16 + 11 reads of the pyramid at literal offsets, summed, nothing else, on
  *                  every pixel: its time over all pixels is what a covered one cannot do without
  *   floor_gouraud  a mesh with light at its vertices, one target (bench_surface.c has its row)
+ *   floor_ball     a ray a pixel to one ball, by its formula, with the outputs of the vessel trace
+ *                  (bench_vessel.c has its row)
  *
  * They run in the frame of the passes that they stand beside, so that what disturbs the one
  * disturbs the other. */

@@ -1,6 +1,7 @@
 #include "bench_vessel.h"
 
 #include "bench_device.h"
+#include "bench_modules.h"
 #include "bench_scene.h"
 #include "scene_tree.h"
 #include "sdfvessel.h"
@@ -12,7 +13,7 @@
 #include <string.h>
 #include <time.h>
 
-enum { ROUNDS = 3, TREES = 5, PASSES = 64 };
+enum { ROUNDS = 3, TREES = 4, PASSES = 160, MOST_ROWS = 64 };
 
 static double now(void) {
     struct timespec t;
@@ -54,14 +55,12 @@ static void run_on_two(void *user, uint32_t count, void (*fn)(void *, uint32_t),
 
 /* ---- trees -------------------------------------------------------------------------------- */
 
-/* nodes 1: one ball of the organ's size, whose rays are the floor. */
 static bool make_tree(uint32_t nodes, sdv_tree *out) {
-    static const float centre[3] = {0, 0, 0}, radius = 80;
     sdv_tree_desc desc;
     scene_tree scene;
     memset(&desc, 0, sizeof desc);
     memset(&scene, 0, sizeof scene);
-    if (nodes > 1 && !scene_tree_make(nodes, 0, &scene))
+    if (!scene_tree_make(nodes, 0, &scene))
         return bench_fail("no memory for a tree of %u nodes", nodes);
     sdv_segment *segments = calloc(nodes, sizeof *segments);
     for (uint32_t i = 0; segments && i < scene.segment_count; i++) {
@@ -69,8 +68,8 @@ static bool make_tree(uint32_t nodes, sdv_tree *out) {
         segments[i].child = scene.segments[2 * (size_t)i + 1];
     }
     desc.node_count = nodes;
-    desc.positions = nodes > 1 ? scene.positions : centre;
-    desc.radii = nodes > 1 ? scene.radii : &radius;
+    desc.positions = scene.positions;
+    desc.radii = scene.radii;
     desc.segment_count = scene.segment_count;
     desc.segments = segments;
     lao_result result = segments ? sdv_tree_build(NULL, &desc, out) : LAO_ERROR_OUT_OF_MEMORY;
@@ -90,6 +89,27 @@ static bool make_grid(const sdv_tree *tree, uint32_t resolution, bool two, sdv_g
     desc.resolution = resolution;
     lao_result result = sdv_grid_build(&host, tree, &desc, out);
     return result == LAO_OK || bench_fail("sdv_grid_build: %s", lao_result_text(result));
+}
+
+/* Seconds for the distance of every cell to all segments, from one cell in SAMPLED. */
+static double brute_force(const sdv_tree *tree, uint32_t resolution) {
+    enum { SAMPLED = 997 };
+    sdv_grid grid;
+    volatile float sum = 0;
+    if (!make_grid(tree, resolution, true, &grid))
+        return NAN;
+    double start = now();
+    for (uint32_t i = 0; i < grid.cell_count; i += SAMPLED) {
+        uint32_t x = i % grid.size[0], y = i / grid.size[0] % grid.size[1];
+        float z = (float)(i / grid.size[0] / grid.size[1]);
+        lao_v3 p = lao_v3_make(grid.origin.x + ((float)x + 0.5f) * grid.cell,
+                               grid.origin.y + ((float)y + 0.5f) * grid.cell,
+                               grid.origin.z + (z + 0.5f) * grid.cell);
+        sum = sum + sdv_cones_distance(grid.cones, grid.cone_count, p, NULL);
+    }
+    double seconds = SAMPLED * (now() - start);
+    sdv_grid_free(&grid);
+    return seconds;
 }
 
 static bool measure_field(cJSON *list, const sdv_tree *tree, uint32_t resolution) {
@@ -113,9 +133,45 @@ static bool measure_field(cJSON *list, const sdv_tree *tree, uint32_t resolution
         }
         sdv_grid_free(&grid);
     }
+    cJSON_AddNumberToObject(row, "ms_brute_1", 1e3 * brute_force(tree, resolution));
     cJSON_AddNumberToObject(row, "ms_1", 1e3 * seconds[0]);
     cJSON_AddNumberToObject(row, "ms_2", 1e3 * seconds[1]);
     return true;
+}
+
+/* ---- the module, with a floor behind its rows --------------------------------------------- */
+
+typedef struct floored {
+    lao_module module;
+    lao_pass_row passes[MOST_ROWS];
+    lao_image_row images[MOST_ROWS];
+} floored;
+
+/* A row as the trace's, with the same outputs: kept for a next frame, else the graph is refused. */
+static const lao_module *floored_make(floored *f) {
+    static const char *const names[3] = {"floor_position", "floor_normal", "floor_ray"};
+    f->module = *sdv_module();
+    memcpy(f->passes, f->module.passes, f->module.pass_count * sizeof *f->passes);
+    memcpy(f->images, f->module.images, f->module.image_count * sizeof *f->images);
+    lao_pass_row *row = &f->passes[f->module.pass_count++];
+    memset(row, 0, sizeof *row);
+    row->name = row->shader = "floor_ball";
+    row->stage = LAO_STAGE_DRAW;
+    row->scope = LAO_SCOPE_PER_SET;
+    for (int i = 0; i < 3; i++) {
+        lao_image_row *image = &f->images[f->module.image_count++];
+        memset(image, 0, sizeof *image);
+        image->name = names[i];
+        image->format = LAO_FORMAT_RGBA32F;
+        image->size = LAO_SIZE_FULL;
+        image->flags = LAO_IMAGE_HISTORY;
+        row->writes[i].image = names[i];
+        row->writes[i].load = LAO_LOAD_DISCARD;
+    }
+    f->module.passes = f->passes;
+    f->module.images = f->images;
+    f->module.shaders = bench_floor_shaders(&f->module.shader_count);
+    return &f->module;
 }
 
 /* ---- rays --------------------------------------------------------------------------------- */
@@ -173,7 +229,7 @@ typedef struct ray_case {
     lao_view view;
     uint32_t size;
     sdv_settings settings;
-    double trace[1 + TREES], shade[1 + TREES], steps[1 + TREES], hits[1 + TREES];
+    double floor[TREES], trace[TREES], shade[TREES], steps[TREES], hits[TREES];
 } ray_case;
 
 static bool draw_subject(ray_case *c, const subject *s, uint32_t index) {
@@ -196,13 +252,14 @@ static bool draw_subject(ray_case *c, const subject *s, uint32_t index) {
         lao_timings(c->context, c->view, rows, &count) != LAO_OK ||
         !read_steps(c->context, c->view, &c->steps[index], &c->hits[index]))
         return false;
+    c->floor[index] = fmin(c->floor[index], pass_time(rows, count, "floor_ball"));
     c->trace[index] = fmin(c->trace[index], pass_time(rows, count, "vessel_trace"));
     c->shade[index] = fmin(c->shade[index], pass_time(rows, count, "vessel_shade"));
     return true;
 }
 
 static void add_case(cJSON *list, const ray_case *c, const subject *subjects, uint32_t count) {
-    for (uint32_t i = 1; i < count; i++) {
+    for (uint32_t i = 0; i < count; i++) {
         cJSON *row = cJSON_CreateObject();
         cJSON_AddStringToObject(row, "backend", c->device->backend);
         cJSON_AddNumberToObject(row, "segments", subjects[i].segments);
@@ -212,7 +269,8 @@ static void add_case(cJSON *list, const ray_case *c, const subject *subjects, ui
         cJSON_AddNumberToObject(row, "steps", c->steps[i]);
         cJSON_AddNumberToObject(row, "trace_ms", c->trace[i]);
         cJSON_AddNumberToObject(row, "shade_ms", c->shade[i]);
-        cJSON_AddNumberToObject(row, "trace_over_ball", c->trace[i] / c->trace[0]);
+        cJSON_AddNumberToObject(row, "floor_ms", c->floor[i]);
+        cJSON_AddNumberToObject(row, "trace_over_floor", c->trace[i] / c->floor[i]);
         cJSON_AddItemToArray(list, row);
     }
 }
@@ -235,7 +293,7 @@ static bool measure_rays(bench_device *device, lao_context *context, const subje
     for (int round = 0; ok && round < rounds; round++) {
         for (uint32_t i = 0; ok && i < count; i++) {
             if (round < 2)
-                c.trace[i] = c.shade[i] = INFINITY;
+                c.floor[i] = c.trace[i] = c.shade[i] = INFINITY;
             ok = draw_subject(&c, &subjects[i], i);
         }
     }
@@ -245,77 +303,223 @@ static bool measure_rays(bench_device *device, lao_context *context, const subje
     return ok;
 }
 
-static bool measure_backend(const char *backend, subject *subjects, uint32_t count, bool quick,
-                            cJSON *list) {
+/* ---- fields by the device ----------------------------------------------------------------- */
+
+/* Times of the rows that build the field, from the first to the last of them. */
+static double field_time(const lao_timing *rows, uint32_t count, cJSON *passes) {
+    double sum = 0;
+    bool inside = false;
+    for (uint32_t i = 0; i < count && i < PASSES; i++) {
+        inside = inside || strcmp(rows[i].pass, "vessel_region_counts") == 0;
+        if (!inside)
+            continue;
+        cJSON *known = cJSON_GetObjectItemCaseSensitive(passes, rows[i].pass);
+        if (known)
+            cJSON_SetNumberValue(known, cJSON_GetNumberValue(known) + rows[i].milliseconds);
+        else
+            cJSON_AddNumberToObject(passes, rows[i].pass, rows[i].milliseconds);
+        sum += rows[i].milliseconds;
+        if (strcmp(rows[i].pass, "vessel_grid") == 0)
+            break;
+    }
+    return sum;
+}
+
+/* Bytes of the images of a device's field, none sharing memory with another; of a pyramid 4/3. */
+static double image_bytes(const uint32_t *items) {
+    const lao_module *module = sdv_module();
+    double sum = 0;
+    for (uint32_t i = 0; i < module->image_count; i++) {
+        const lao_image_row *row = &module->images[i];
+        if (row->size == LAO_SIZE_ITEMS)
+            sum += (row->levels ? 4.0 / 3.0 : 1.0) * lao_format_bytes(row->format) *
+                   items[row->width - 1];
+    }
+    return sum;
+}
+
+static bool draw_field(bench_device *device, lao_context *context, lao_view view, lao_object object,
+                       lao_timing *rows, uint32_t *count) {
+    const void *settings[1] = {NULL};
+    lao_settings lines;
+    lao_frame frame;
+    lao_set set;
+    double ms;
+    memset(&set, 0, sizeof set);
+    memset(&lines, 0, sizeof lines);
+    lines.supersampling = 1;
+    set.object = object;
+    set.settings = &lines;
+    set.module_settings = settings;
+    make_frame(&frame, &set);
+    frame.view = view;
+    return bench_device_frame(device, context, &frame, &ms) &&
+           lao_timings(context, view, rows, count) == LAO_OK;
+}
+
+/* A tree that moves: the upload of its cones, and the rows that make its field of them. */
+static bool measure_device_field(bench_device *device, lao_context *context, sdv_tree *tree,
+                                 uint32_t resolution, cJSON *list) {
+    const lao_view_desc size = {64, 64, 0};
+    lao_timing rows[PASSES];
+    lao_limits limits;
+    lao_object handle = {0};
+    lao_view view = {0};
+    sdv_grid_desc desc;
+    sdv_object object;
+    double upload = INFINITY, field = INFINITY;
+    cJSON *row = cJSON_CreateObject(), *best = NULL;
+    memset(&desc, 0, sizeof desc);
+    desc.resolution = resolution;
+    cJSON_AddItemToArray(list, row);
+    lao_limits_get(context, &limits);
+    if (sdv_object_make_tree(NULL, tree, &desc, limits.image_size, NULL, &object) != LAO_OK)
+        return bench_fail("sdv_object_make_tree");
+    bool ok = lao_object_create(context, &object.desc, &handle) == LAO_OK &&
+              lao_view_create(context, &size, &view) == LAO_OK;
+    for (int round = 0; ok && round <= ROUNDS; round++) {
+        const uint32_t node = tree->node_count / 2;
+        uint32_t count = PASSES;
+        cJSON *passes = cJSON_CreateObject();
+        double start = now();
+        ok = sdv_object_move(NULL, tree, &node, 1, &object) == LAO_OK &&
+             lao_object_update(context, handle, &object.desc) == LAO_OK;
+        upload = round > 0 ? fmin(upload, 1e3 * (now() - start)) : upload;
+        ok = ok && draw_field(device, context, view, handle, rows, &count);
+        double ms = ok ? field_time(rows, count, passes) : 0;
+        if (ok && round > 0 && ms < field) {
+            field = ms;
+            cJSON_Delete(best);
+            best = passes;
+        } else {
+            cJSON_Delete(passes);
+        }
+    }
+    cJSON_AddStringToObject(row, "backend", device->backend);
+    cJSON_AddNumberToObject(row, "segments", tree->segment_count);
+    cJSON_AddNumberToObject(row, "resolution", resolution);
+    cJSON_AddBoolToObject(row, "on_device", object.on_device != 0);
+    cJSON_AddNumberToObject(row, "cell_bytes",
+                            image_bytes(object.desc.further_items) / object.grid.cell_count);
+    cJSON_AddNumberToObject(row, "upload_ms", upload);
+    cJSON_AddNumberToObject(row, "ms", field);
+    cJSON_AddItemToObject(row, "passes", best ? best : cJSON_CreateObject());
+    lao_view_destroy(context, view);
+    lao_object_destroy(context, handle);
+    sdv_object_free(&object);
+    return ok || bench_fail("a field on the device");
+}
+
+/* ---- all of it ---------------------------------------------------------------------------- */
+
+/* Fields of these trees are measured, and rays through those. */
+typedef struct bench_trees {
+    sdv_tree fields[2];
+    subject rays[TREES];
+    uint32_t field_count, ray_count;
+} bench_trees;
+
+static bool trees_make(bench_trees *t, bool quick) {
+    static const uint32_t fields[] = {1000, 6000}, rays[TREES] = {1000, 3000, 30000, 300000};
+    t->field_count = quick ? 1 : 2;
+    t->ray_count = quick ? 1 : TREES;
+    for (uint32_t i = 0; i < t->field_count; i++) {
+        if (!make_tree(fields[i], &t->fields[i]))
+            return false;
+    }
+    for (uint32_t i = 0; i < t->ray_count; i++) {
+        subject *s = &t->rays[i];
+        if (!make_tree(rays[i], &s->tree) || !make_grid(&s->tree, quick ? 48 : 128, true, &s->grid))
+            return false;
+        s->segments = s->tree.segment_count;
+        if (sdv_object_make(NULL, &s->grid, NULL, &s->object) != LAO_OK)
+            return bench_fail("no memory");
+    }
+    return true;
+}
+
+static void trees_free(bench_trees *t) {
+    for (uint32_t i = 0; i < t->field_count; i++)
+        sdv_tree_free(&t->fields[i]);
+    for (uint32_t i = 0; i < t->ray_count; i++) {
+        sdv_object_free(&t->rays[i].object);
+        sdv_grid_free(&t->rays[i].grid);
+        sdv_tree_free(&t->rays[i].tree);
+    }
+}
+
+static bool measure_backend(const char *backend, const lao_module *module, bench_trees *t,
+                            bool quick, cJSON *fields, cJSON *rays) {
     bench_device device;
     lao_context *context = NULL;
-    bool ok = bench_device_open(&device, backend) &&
-              bench_device_context(&device, sdv_module(), &context);
-    for (uint32_t i = 0; ok && i < count; i++)
-        ok = lao_object_create(context, &subjects[i].object.desc, &subjects[i].handle) == LAO_OK;
+    bool ok =
+        bench_device_open(&device, backend) && bench_device_context(&device, module, &context);
+    for (uint32_t i = 0; ok && i < t->field_count; i++)
+        ok = measure_device_field(&device, context, &t->fields[i], 64, fields) &&
+             (quick || measure_device_field(&device, context, &t->fields[i], 128, fields));
+    for (uint32_t i = 0; ok && i < t->ray_count; i++)
+        ok = lao_object_create(context, &t->rays[i].object.desc, &t->rays[i].handle) == LAO_OK;
     for (int k = 0; ok && k < (quick ? 1 : 2); k++) {
         uint32_t size = quick ? 128 : k == 0 ? 512 : 1024;
-        ok = measure_rays(&device, context, subjects, count, size, SDV_NEAR_MISS_CLOSE, list) &&
-             (k > 0 ||
-              measure_rays(&device, context, subjects, count, size, SDV_NEAR_MISS_NONE, list));
+        ok = measure_rays(&device, context, t->rays, t->ray_count, size, SDV_NEAR_MISS_CLOSE,
+                          rays) &&
+             (k > 0 || measure_rays(&device, context, t->rays, t->ray_count, size,
+                                    SDV_NEAR_MISS_NONE, rays));
     }
     lao_destroy(context);
     bench_device_close(&device);
     return ok;
 }
 
-static bool make_subject(subject *s, uint32_t nodes, uint32_t resolution) {
-    if (!make_tree(nodes, &s->tree) ||
-        !make_grid(&s->tree, nodes > 1 ? resolution : 16, true, &s->grid))
-        return false;
-    s->segments = s->tree.segment_count;
-    return sdv_object_make(NULL, &s->grid, NULL, &s->object) == LAO_OK || bench_fail("no memory");
-}
-
 bool bench_vessel_run(cJSON *document, bool quick) {
-    static const uint32_t nodes[1 + TREES] = {1, 1000, 3000, 6000, 30000, 300000};
-    static const char *const backends[] = {"gl", "vk"};
-    uint32_t count = quick ? 2 : 1 + TREES;
-    subject *subjects = calloc(count, sizeof *subjects);
+    bench_trees *trees = calloc(1, sizeof *trees);
     cJSON *fields = cJSON_AddArrayToObject(document, "fields");
+    cJSON *device_fields = cJSON_AddArrayToObject(document, "device_fields");
     cJSON *rays = cJSON_AddArrayToObject(document, "rays");
-    bool ok = subjects || bench_fail("no memory");
-    for (uint32_t i = 0; ok && i < count; i++) {
-        ok = make_subject(&subjects[i], nodes[i], quick ? 48 : 128);
-        if (ok && i > 0 && nodes[i] <= 6000)
-            ok = measure_field(fields, &subjects[i].tree, 64) &&
-                 (quick || measure_field(fields, &subjects[i].tree, 128));
-    }
-    for (int b = 0; ok && b < 2; b++)
-        ok = measure_backend(backends[b], subjects, count, quick, rays);
-    for (uint32_t i = 0; subjects && i < count; i++) {
-        sdv_object_free(&subjects[i].object);
-        sdv_grid_free(&subjects[i].grid);
-        sdv_tree_free(&subjects[i].tree);
-    }
-    free(subjects);
+    floored floor;
+    const lao_module *module = floored_make(&floor);
+    bool ok = trees ? trees_make(trees, quick) : bench_fail("no memory");
+    for (uint32_t i = 0; ok && i < trees->field_count; i++)
+        ok = measure_field(fields, &trees->fields[i], 64) &&
+             (quick || measure_field(fields, &trees->fields[i], 128));
+    ok = ok && measure_backend("gl", module, trees, quick, device_fields, rays) &&
+         (!bench_floors_have_words() ||
+          measure_backend("vk", module, trees, quick, device_fields, rays));
+    if (trees)
+        trees_free(trees);
+    free(trees);
     return ok;
 }
 
 static double number(const cJSON *row, const char *name) {
     return cJSON_GetNumberValue(cJSON_GetObjectItemCaseSensitive(row, name));
 }
+static const char *text_of(const cJSON *row, const char *name) {
+    return cJSON_GetStringValue(cJSON_GetObjectItemCaseSensitive(row, name));
+}
 
 void bench_vessel_print(const cJSON *document) {
     const cJSON *row;
-    printf("field: segments  resolution     cells    listed  bytes a cell    ms, 1 thread  2 "
-           "threads\n");
+    printf("field by the CPU: segments  resolution     cells    listed  bytes a cell  ms, 1 thread"
+           "  2 threads  brute force, 1 thread (of a sample)\n");
     cJSON_ArrayForEach(row, cJSON_GetObjectItemCaseSensitive(document, "fields"))
-        printf("%15.0f %11.0f %9.0f %9.0f %13.1f %16.1f %10.1f\n", number(row, "segments"),
+        printf("%26.0f %11.0f %9.0f %9.0f %13.1f %13.1f %10.1f %22.0f\n", number(row, "segments"),
                number(row, "resolution"), number(row, "cells"), number(row, "listed"),
-               number(row, "cell_bytes"), number(row, "ms_1"), number(row, "ms_2"));
+               number(row, "cell_bytes"), number(row, "ms_1"), number(row, "ms_2"),
+               number(row, "ms_brute_1"));
+    printf("a segment takes 40 bytes\n\nfield by the device, every frame: segments  resolution  "
+           "backend  bytes a cell  move and upload ms  rows ms\n");
+    cJSON_ArrayForEach(row, cJSON_GetObjectItemCaseSensitive(document, "device_fields"))
+        printf("%42.0f %11.0f %8s %13.1f %19.1f %8.1f%s\n", number(row, "segments"),
+               number(row, "resolution"), text_of(row, "backend"), number(row, "cell_bytes"),
+               number(row, "upload_ms"), number(row, "ms"),
+               cJSON_IsTrue(cJSON_GetObjectItemCaseSensitive(row, "on_device")) ? "" : "  (CPU)");
     printf(
-        "\nrays: segments  backend  size  near miss   hits  steps  trace ms  shade ms  trace over "
-        "one ball's\n");
+        "\nrays: segments  backend  size  near miss   hits  steps  trace ms  shade ms  floor ms  "
+        "trace over floor (one ball, by its formula)\n");
     cJSON_ArrayForEach(row, cJSON_GetObjectItemCaseSensitive(document, "rays")) printf(
-        "%14.0f %8s %5.0f %10s %6.2f %6.1f %9.1f %9.1f %11.2f\n", number(row, "segments"),
-        cJSON_GetStringValue(cJSON_GetObjectItemCaseSensitive(row, "backend")), number(row, "size"),
-        cJSON_GetStringValue(cJSON_GetObjectItemCaseSensitive(row, "near_miss")),
+        "%14.0f %8s %5.0f %10s %6.2f %6.1f %9.1f %9.1f %9.1f %11.1f\n", number(row, "segments"),
+        text_of(row, "backend"), number(row, "size"), text_of(row, "near_miss"),
         number(row, "hits"), number(row, "steps"), number(row, "trace_ms"), number(row, "shade_ms"),
-        number(row, "trace_over_ball"));
+        number(row, "floor_ms"), number(row, "trace_over_floor"));
 }

@@ -1,5 +1,5 @@
 // The host's own shader of host_depth.c: a box out of the vertex number, without buffers.
-// host_depth_shaders.sh puts this text and its SPIR-V into host_depth_shaders.h.
+// host_shaders.sh puts this text and its SPIR-V into host_depth_shaders.h.
 #ifdef VULKAN
 #define NUMBER gl_VertexIndex
 #define LINK layout(location = 0) flat

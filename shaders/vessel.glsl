@@ -8,20 +8,6 @@ sdv_box sdv_box_fetch(samplerBuffer box) {
     r.size = texelFetch(box, 1).xyz;
     return r;
 }
-/* One sample: from the list of the cell at p, or of the nearest cell that has one. */
-sdv_near sdv_near_at(samplerBuffer cells, samplerBuffer ids, samplerBuffer cones, sdv_box box, vec4 cell, lao_v3 p,
-                     lao_v3 direction) {
-    sdv_near n = sdv_near_start(sdv_near_reach(box.cell));
-    vec4 from = cell.w > 0.0 ? cell : texelFetch(cells, int(cell.y));
-    int first = int(from.z);
-    int count = int(from.w);
-    for (int i = 0; i < count; i++) {
-        float id = texelFetch(ids, first + i).x;
-        int at = 2 * int(id);
-        n = sdv_near_add(n, p, direction, texelFetch(cones, at), texelFetch(cones, at + 1), id);
-    }
-    return n;
-}
 /* ---- the tree with shapes: sdv_trace_shapes. The buffer begins with their number, and 1 where one is a union. */
 sdv_shape sdv_shape_fetch(samplerBuffer shapes, int i) {
     vec4 kind = texelFetch(shapes, 3 + 4 * i);
@@ -73,32 +59,69 @@ float sdv_frame_reach(float supersampling) {
                                sdv_outline_width(lao_setting_contour, lao_setting_outline_unit, zoom),
                                lao_setting_shadow_width, lao_setting_mark_halo, lao_frame.depth.z);
 }
-/* Signed distance of the tree at p. */
-float sdv_tree_distance_at(samplerBuffer cells, samplerBuffer ids, samplerBuffer cones, sdv_box box, vec4 cell, lao_v3 p) {
-    return sdv_near_at(cells, ids, cones, box, cell, p, lao_v3_make(0.0, 0.0, 1.0)).distance;
+/* ---- the field made by the device, by the rows vessel_region_counts to vessel_grid: images of items, LAO_ITEMS_WIDTH a row */
+ivec2 sdv_item(int i) {
+    return ivec2(i & 2047, i >> 11);
 }
-/* The distance, and the number of the nearest cone of the cell's list (-1: it has none). */
-struct sdv_solid_sample {
-    sdv_solid solid;
-    float cone;
-};
-sdv_solid_sample sdv_solid_at(samplerBuffer cells, samplerBuffer ids, samplerBuffer cones, samplerBuffer shapes,
-                              samplerBuffer fields, sdv_box box, lao_v3 p) {
-    sdv_solid_sample r;
-    vec4 cell = texelFetch(cells, sdv_cell_at(box, p));
-    float least = SDV_FAR;
-    r.cone = -1.0;
-    for (int i = 0; i < int(cell.w); i++) {
-        float id = texelFetch(ids, int(cell.z) + i).x;
-        float d = sdv_round_cone(p, texelFetch(cones, 2 * int(id)), texelFetch(cones, 2 * int(id) + 1));
-        if (d < least) {
-            least = d;
-            r.cone = id;
+int sdv_item_at(ivec2 pixel) {
+    return pixel.x + 2048 * pixel.y;
+}
+/* i / n for i < 2^24, without the integer division that vector units lack. */
+int sdv_quotient(int i, int n) {
+    int q = int(float(i) / float(n));
+    int rest = i - q * n;
+    return rest < 0 ? q - 1 : (rest >= n ? q + 1 : q);
+}
+/* Of an index, x fastest. */
+ivec3 sdv_place(int index, ivec3 size) {
+    int row = sdv_quotient(index, size.x);
+    int z = sdv_quotient(row, size.y);
+    return ivec3(index - row * size.x, row - z * size.y, z);
+}
+/* Number of the highest bit of a word that is not 0. */
+int sdv_highest(uint word) {
+    int n = 0;
+    uint rest = word;
+    for (int i = 16; i > 0; i >>= 1) {
+        if (rest >= (1u << uint(i))) {
+            rest >>= uint(i);
+            n += i;
         }
     }
-    sdv_solid tree = sdv_solid_start(sdv_tree_bound(least, cell.w > 0.0, cell.z, sdv_box_distance(p, box), box.cell));
-    r.solid = sdv_solid_add_all(shapes, fields, tree, p, true);
-    return r;
+    return n;
+}
+/* The last of `count` items that starts at an entry or before it. */
+int sdv_owner(sampler2D starts, int count, float entry) {
+    int low = 0;
+    int high = count;
+    for (int i = 0; i < 24; i++) {
+        if (high - low < 2) {
+            break;
+        }
+        int middle = (low + high) >> 1;
+        if (texelFetch(starts, sdv_item(middle), 0).x <= entry) {
+            low = middle;
+        } else {
+            high = middle;
+        }
+    }
+    return low;
+}
+/* The nearest so far of an outward search: cells squared, what it is, and where along the axis. Of those as near the
+   lowest, hence `lower`: it is below all before. */
+struct sdv_nearest {
+    int apart;
+    float value;
+    int along;
+};
+sdv_nearest sdv_nearest_start() {
+    return sdv_nearest(0x3fffffff, -1.0, 0);
+}
+sdv_nearest sdv_nearest_add(sdv_nearest best, float value, int apart, int along, bool lower) {
+    if (value >= 0.0 && (apart < best.apart || (lower && apart == best.apart))) {
+        return sdv_nearest(apart, value, along);
+    }
+    return best;
 }
 /* ---- light and ink */
 /* How dark the depth shadow at a traced pixel is; normal, ray: its texels. */

@@ -5,20 +5,46 @@ LAO_TEX(2, samplerBuffer, ids)
 LAO_TEX(3, samplerBuffer, cones)
 LAO_TEX(4, samplerBuffer, shapes)
 LAO_TEX(5, samplerBuffer, fields)
+LAO_TEX(6, sampler2D, grid)
+LAO_TEX(7, sampler2D, lists)
 LAO_CONSTANT(0, lao_constant_near_miss)
 LAO_CONSTANT(1, lao_constant_supersampling)
+LAO_CONSTANT(2, lao_constant_has_vessel_cells)
 
 LAO_OUT(0, vec4, out_position) /* world, mm; number of the cone, -1: nothing was hit, -2: a shape */
 LAO_OUT(1, vec4, out_normal)   /* world, towards the viewer; least distance of a near miss, mm */
 LAO_OUT(2, vec4, out_ray)      /* mm along the ray: hit, near miss; samples; 2 * shape, + 1: from inside the solid */
 
 #ifdef LAO_FRAGMENT
+LAO_INCLUDE vessel_field.glsl
+/* The distance, and the number of the nearest cone of the cell's list (-1: it has none). */
+struct solid_sample {
+    sdv_solid solid;
+    float cone;
+};
+solid_sample solid_at(sdv_box box, lao_v3 p) {
+    solid_sample r;
+    vec4 cell = cell_fetch(sdv_cell_at(box, p));
+    float least = SDV_FAR;
+    r.cone = -1.0;
+    for (int i = 0; i < int(cell.w); i++) {
+        float id = id_fetch(int(cell.z) + i);
+        float d = sdv_round_cone(p, texelFetch(cones, 2 * int(id)), texelFetch(cones, 2 * int(id) + 1));
+        if (d < least) {
+            least = d;
+            r.cone = id;
+        }
+    }
+    sdv_solid tree = sdv_solid_start(sdv_tree_bound(least, cell.w > 0.0, cell.z, sdv_box_distance(p, box), box.cell));
+    r.solid = sdv_solid_add_all(shapes, fields, tree, p, true);
+    return r;
+}
 /* What near misses go by: not only a bound, where it matters. */
 float watched(sdv_box b, lao_v3 p, float reach) {
-    vec4 cell = texelFetch(cells, sdv_cell_at(b, p));
+    vec4 cell = cell_fetch(sdv_cell_at(b, p));
     float tree = SDV_FAR;
     if (cell.w > 0.0 || sdv_is_within(cell.z, reach)) {
-        tree = sdv_tree_distance_at(cells, ids, cones, b, cell, p);
+        tree = tree_distance_in(b, cell, p);
     }
     return sdv_solid_add_all(shapes, fields, sdv_solid_start(tree), p, false).distance;
 }
@@ -36,7 +62,7 @@ void land(sdv_box b, lao_v3 origin, lao_v3 direction, float start, bool inside) 
     float t = start;
     for (int i = 0; i <= SDV_POLISH_ROUNDS; i++) {
         lao_v3 p = lao_v3_along(origin, direction, t);
-        sdv_solid_sample s = sdv_solid_at(cells, ids, cones, shapes, fields, b, p);
+        solid_sample s = solid_at(b, p);
         lao_v3 gradient;
         if (s.solid.part >= 0) {
             gradient = lao_v3_scale(sdv_shape_gradient_at(fields, sdv_shape_fetch(shapes, s.solid.part), p), s.solid.side);
@@ -77,8 +103,7 @@ void main() {
         if (!(t <= span.y) || hit) {
             break;
         }
-        sdv_solid s =
-            sdv_solid_at(cells, ids, cones, shapes, fields, b, lao_v3_along(origin, direction, t)).solid;
+        sdv_solid s = solid_at(b, lao_v3_along(origin, direction, t)).solid;
         if (i == 0) {
             inside = s.distance < 0.0;
         }

@@ -16,6 +16,8 @@ LAO_TEX(13, sampler2D, across)
 LAO_TEX(14, sampler2D, recalled)
 LAO_TEX(15, samplerBuffer, pattern) /* its size; thresholds */
 LAO_TEX(16, samplerBuffer, colors)  /* for marks */
+LAO_TEX(17, sampler2D, grid)
+LAO_TEX(18, sampler2D, lists)
 LAO_CONSTANT(0, lao_constant_near_miss)
 LAO_CONSTANT(1, lao_constant_field_occlusion)
 LAO_CONSTANT(2, lao_constant_style)
@@ -23,10 +25,12 @@ LAO_CONSTANT(3, lao_constant_void_style)
 LAO_CONSTANT(4, lao_constant_variant) /* 1: with shapes; 2: not a tree */
 LAO_CONSTANT(5, lao_constant_mark_style)
 LAO_CONSTANT(6, lao_constant_field_shadow)
+LAO_CONSTANT(7, lao_constant_has_vessel_cells)
 
 LAO_OUT(0, vec4, out_ink) /* white that is left; the rest in it of what was shown before (sdv_ink_rest) */
 
 #ifdef LAO_FRAGMENT
+LAO_INCLUDE vessel_field.glsl
 LAO_INCLUDE vessel_light.glsl
 /* Is the void marked at the pixel, close to a marked vessel? wide: periods per pixel. */
 bool has_halo(float d_min, lao_v3 near_miss, lao_v3 direction, float wide) {
@@ -35,8 +39,7 @@ bool has_halo(float d_min, lao_v3 near_miss, lao_v3 direction, float wide) {
         return false;
     }
     sdv_box b = sdv_box_fetch(box);
-    vec4 cell = texelFetch(cells, sdv_cell_at(b, near_miss));
-    float cone = sdv_near_at(cells, ids, cones, b, cell, near_miss, direction).cone;
+    float cone = near_at(b, near_miss, direction).cone;
     if (cone < 0.0) {
         return false;
     }

@@ -1,5 +1,5 @@
-/* Light at a place of a vessel, and whether it is marked: for shaders that read box, cells, ids, cones, shapes, fields
-   and colors and have the constants variant (1: with shapes; 2: not a tree), field_occlusion and field_shadow. */
+/* Light at a place of a vessel, and whether it is marked: for shaders that include vessel_field.glsl, read box, shapes,
+   fields and colors and have the constants variant (1: with shapes; 2: not a tree), field_occlusion and field_shadow. */
 /* What is known of the tree's distance at p, with shapes. */
 float combined(float d, lao_v3 p, bool bound) {
     if (lao_constant_variant == 1) {
@@ -9,7 +9,7 @@ float combined(float d, lao_v3 p, bool bound) {
 }
 /* Signed distance at p, from the list of its cell. */
 float field_at(sdv_box b, lao_v3 p) {
-    return combined(sdv_tree_distance_at(cells, ids, cones, b, texelFetch(cells, sdv_cell_at(b, p)), p), p, false);
+    return combined(tree_distance_in(b, cell_fetch(sdv_cell_at(b, p)), p), p, false);
 }
 
 /* Openness of p along its normal: sdv_openness; from within a vessel the room inside counts. */
@@ -28,14 +28,14 @@ float openness(sdv_box b, lao_v3 p, lao_v3 n, bool inside) {
 lao_v3 smooth_normal(sdv_box b, lao_v3 p, float cone, lao_v3 n) {
     int own = 2 * int(cone);
     lao_v2 reach = sdv_joint_reach(p, texelFetch(cones, own), texelFetch(cones, own + 1), lao_setting_joint_smoothness, b.cell);
-    vec4 cell = texelFetch(cells, sdv_cell_at(b, p));
+    vec4 cell = cell_fetch(sdv_cell_at(b, p));
     int count = int(cell.w);
     if (!(reach.x > 0.0)) {
         return n;
     }
     lao_v3 sum = sdv_joint_start(p, texelFetch(cones, own), texelFetch(cones, own + 1), reach);
     for (int i = 0; i < count; i++) {
-        int at = 2 * int(texelFetch(ids, int(cell.z) + i).x);
+        int at = 2 * int(id_fetch(int(cell.z) + i));
         sum = sdv_joint_add(sum, p, texelFetch(cones, at), texelFetch(cones, at + 1), reach);
     }
     return sdv_joint_normal(sum, n);
@@ -56,8 +56,8 @@ float lit_at(sdv_box b, lao_v3 p) {
             break;
         }
         lao_v3 q = lao_v3_along(p, light, t);
-        vec4 cell = texelFetch(cells, sdv_cell_at(b, q));
-        float tree = sdv_tree_distance_at(cells, ids, cones, b, cell, q);
+        vec4 cell = cell_fetch(sdv_cell_at(b, q));
+        float tree = tree_distance_in(b, cell, q);
         float d = combined(tree, q, false);
         lit = d < least ? 0.0 : sdv_shadow_add(lit, d, t, hardness);
         float bound = combined(sdv_tree_bound(tree, cell.w > 0.0, cell.z, sdv_box_distance(q, b), b.cell), q, true);

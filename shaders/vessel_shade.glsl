@@ -14,6 +14,8 @@ LAO_TEX(10, sampler2D, surface)
 LAO_TEX(11, sampler2D, bgnormal)
 LAO_TEX(12, sampler2D, ink)
 LAO_TEX(13, sampler2D, seen_color) /* with variant 2 */
+LAO_TEX(14, sampler2D, grid)
+LAO_TEX(15, sampler2D, lists)
 LAO_CONSTANT(0, lao_constant_near_miss)
 LAO_CONSTANT(1, lao_constant_surface_shininess)
 LAO_CONSTANT(2, lao_constant_field_occlusion)
@@ -23,10 +25,12 @@ LAO_CONSTANT(5, lao_constant_void_style)
 LAO_CONSTANT(6, lao_constant_variant) /* 1: with shapes; 2: not a tree */
 LAO_CONSTANT(7, lao_constant_supersampling)
 LAO_CONSTANT(8, lao_constant_field_shadow)
+LAO_CONSTANT(9, lao_constant_has_vessel_cells)
 
 LAO_OUT(0, vec4, out_color)
 
 #ifdef LAO_FRAGMENT
+LAO_INCLUDE vessel_field.glsl
 LAO_INCLUDE vessel_light.glsl
 /* White that ink leaves of the pixel. */
 float white_at(ivec2 pixel) {
@@ -126,7 +130,7 @@ void main() {
         color = own.xyz;
         if (own.w < 0.5) { /* that of the nearest vessel */
             sdv_box b = sdv_box_fetch(box);
-            cone = sdv_near_at(cells, ids, cones, b, texelFetch(cells, sdv_cell_at(b, p)), p, direction).cone;
+            cone = near_at(b, p, direction).cone;
         }
     }
     if (lao_constant_variant == 2) {

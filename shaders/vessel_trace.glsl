@@ -3,17 +3,18 @@ LAO_TEX(0, samplerBuffer, box)   /* lower corner and edge of a cell; cells along
 LAO_TEX(1, samplerBuffer, cells) /* of sdv_grid, like what follows */
 LAO_TEX(2, samplerBuffer, ids)
 LAO_TEX(3, samplerBuffer, cones)
+LAO_TEX(4, sampler2D, grid) /* the same, made by the rows before */
+LAO_TEX(5, sampler2D, lists)
 LAO_CONSTANT(0, lao_constant_near_miss)
 LAO_CONSTANT(1, lao_constant_supersampling)
+LAO_CONSTANT(2, lao_constant_has_vessel_cells)
 
 LAO_OUT(0, vec4, out_position) /* world, mm; number of the cone, -1: nothing was hit */
 LAO_OUT(1, vec4, out_normal)   /* world, towards the viewer; least distance of a near miss, mm */
 LAO_OUT(2, vec4, out_ray)      /* mm along the ray: hit, near miss; samples; 1: from inside a vessel */
 
 #ifdef LAO_FRAGMENT
-sdv_near near_at(sdv_box b, lao_v3 p, lao_v3 direction) {
-    return sdv_near_at(cells, ids, cones, b, texelFetch(cells, sdv_cell_at(b, p)), p, direction);
-}
+LAO_INCLUDE vessel_field.glsl
 
 /* Refines a local minimum whose sample was nearest to `cone`. */
 sdv_march minimum(sdv_box b, lao_v3 origin, lao_v3 direction, sdv_march m, float cone, float low, float high) {
@@ -48,8 +49,8 @@ sdv_march least(sdv_box b, lao_v3 origin, lao_v3 direction, sdv_march start) {
             break;
         }
         lao_v3 p = lao_v3_along(origin, direction, t);
-        vec4 cell = texelFetch(cells, sdv_cell_at(b, p));
-        sdv_near n = sdv_near_at(cells, ids, cones, b, cell, p, direction);
+        vec4 cell = cell_fetch(sdv_cell_at(b, p));
+        sdv_near n = near_in(b, cell, p, direction);
         m = note(origin, direction, m, n);
         span = sdv_least_span(origin, direction, b, m.low);
         t = i == 0 ? span.x : t + sdv_least_step(n, cell.w > 0.0, cell.z, m.low, b.cell);
@@ -91,11 +92,11 @@ void main() {
             break;
         }
         lao_v3 p = lao_v3_along(origin, direction, m.t);
-        vec4 cell = texelFetch(cells, sdv_cell_at(b, p));
+        vec4 cell = cell_fetch(sdv_cell_at(b, p));
         bool occupied = cell.w > 0.0;
         sdv_near n = sdv_near_start(0.0);
         if (occupied || (nearest && sdv_is_within(cell.z, reach))) {
-            n = sdv_near_at(cells, ids, cones, b, cell, p, direction);
+            n = near_in(b, cell, p, direction);
         }
         if (nearest) {
             m = note(origin, direction, m, n);

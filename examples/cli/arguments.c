@@ -125,7 +125,7 @@ static const flag_row flags[] = {
     {"--ssaa", NULL, "N", FLAG_SETTING, DRAWN, ALL(all), "supersampling", "samples per pixel and axis, 1..4 (2)"},
     {"--background", NULL, "#rrggbb", FLAG_COLOR, DRAWN, ALL(background), NULL, "or #rrggbbaa or r,g,b[,a] in 0..1 (#f4f4f2)"},
     {"--backend", NULL, "gl|vk", FLAG_CHOICE, SHOT, ALL(backend), "gl|vk", "OpenGL or Vulkan (gl); the picture is the same"},
-    {"--camera", NULL, "FILE.json", FLAG_TEXT, DRAWN, ALL(camera), NULL, "{\"eye\":[3],\"center\":[3],\"up\":[3],\"fovy\":degrees | \"ortho_height\":mm}"},
+    {"--camera", NULL, "FILE.json", FLAG_TEXT, DRAWN, ALL(camera), NULL, "{\"eye\":[3],\"center\":[3],\"up\":[3],\"fovy\":degrees | \"ortho_height\":mm}, or that text itself"},
     {"--save-camera", NULL, "FILE.json", FLAG_TEXT, SHOT, ALL(save_camera), NULL, "write the camera that was used"},
     {"--view", NULL, "NAME", FLAG_CHOICE, DRAWN, ALL(view), "axial|coronal|sagittal|iso", "direction of the automatic camera: axial, coronal, sagittal or iso"},
     {"--ortho", NULL, NULL, FLAG_SWITCH, DRAWN, ALL(ortho), NULL, "make the automatic camera orthographic"},

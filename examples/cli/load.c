@@ -135,9 +135,7 @@ static int by_value(const void *a, const void *b) {
     return (x > y) - (x < y);
 }
 
-/* Lawonn 2014, 5.2: beta is twice the median of the lines' last times, in ms^2; 0: no line has one.
- */
-static float usual_beta(const cli_set *set) {
+float cli_usual_beta(const cli_set *set) {
     const io_lines *lines = &set->lines;
     float *last = cli_new(lines->line_count, sizeof *last), beta = 0;
     uint32_t count = 0;
@@ -171,7 +169,7 @@ static bool follow_time(const cli_options *options, cli_scene *scene) {
         if (asked && !told && set->times)
             s->trail = LAO_TRAIL_TAPER;
         if (s->trail == LAO_TRAIL_HIGHLIGHT && !(s->highlight_beta > 0))
-            s->highlight_beta = fminf(fmaxf(usual_beta(set), beta->minimum), beta->maximum);
+            s->highlight_beta = fminf(fmaxf(cli_usual_beta(set), beta->minimum), beta->maximum);
         if (!(scene->period > 0))
             scene->period = (double)s->period;
     }

@@ -68,6 +68,10 @@ bool cli_read(const cli_source *source, unsigned wanted, io_contents *out);
  * range share one range, so that a colour is one value in the whole picture. False: reported. */
 bool cli_colour(cli_scene *scene);
 
+/* Lawonn 2014, 5.2: beta is twice the median of the lines' last times, in ms^2; 0: no line has one.
+ * The set has times. */
+float cli_usual_beta(const cli_set *set);
+
 /* Do both sets show the same values in the same colours? Then one legend tells of both. */
 bool cli_same_scale(const cli_set *a, const cli_set *b);
 

@@ -13,10 +13,24 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+/* ---- listeners -------------------------------------------------------------------------- */
+
+/* A thread's own, so that work beside a window reports to it through functions without a context.
+ */
+static __thread const cli_listener *hears;
+
+void cli_listen(const cli_listener *listener) {
+    hears = listener;
+}
+
+const cli_listener *cli_listening(void) {
+    return hears;
+}
+
 /* ---- messages --------------------------------------------------------------------------- */
 
 /* One write, so that lines of several processes do not mix. */
-static void say(char *line, size_t room) {
+static void say(bool failure, char *line, size_t room) {
     size_t length = strlen(line);
     for (size_t i = 0; i < length; i++) {
         if ((unsigned char)line[i] < 32 || line[i] == 127)
@@ -25,8 +39,11 @@ static void say(char *line, size_t room) {
     while (length > 0 && line[length - 1] == ' ')
         length--;
     length = length < room - 2 ? length : room - 2;
-    memcpy(line + length, "\n", 2);
-    fputs(line, stderr);
+    memcpy(line + length, hears ? "" : "\n", hears ? 1 : 2);
+    if (!hears)
+        fputs(line, stderr);
+    else if (hears->say)
+        hears->say(hears->user, failure, line + strlen("lineao: "));
 }
 
 bool cli_fail(const char *format, ...) {
@@ -36,14 +53,14 @@ bool cli_fail(const char *format, ...) {
     va_start(arguments, format);
     vsnprintf(line + used, sizeof line - used, format, arguments);
     va_end(arguments);
-    say(line, sizeof line);
+    say(true, line, sizeof line);
     return false;
 }
 
 void cli_warn(const char *place, const char *text) {
     char line[2048];
     snprintf(line, sizeof line, "lineao: %s: warning: %s", place, text);
-    say(line, sizeof line);
+    say(false, line, sizeof line);
 }
 
 /* ---- Ctrl-C ----------------------------------------------------------------------------- */
@@ -57,6 +74,8 @@ void cli_interrupt_hold(void) {
 
 bool cli_interrupted(void) {
     sigset_t set;
+    if (hears)
+        return hears->interrupted && hears->interrupted(hears->user);
     return sigpending(&set) == 0 && sigismember(&set, SIGINT) == 1;
 }
 
@@ -67,6 +86,12 @@ bool cli_go_on(void) {
 /* ---- progress --------------------------------------------------------------------------- */
 
 void cli_progress_show(cli_progress *progress, uint64_t done, uint64_t total) {
+    if (hears) {
+        if (hears->progress)
+            hears->progress(hears->user, progress->doing, progress->name,
+                            total > 0 ? (double)done / (double)total : 0);
+        return;
+    }
     int percent = total > 0 ? (int)(100.0 * (double)done / (double)total) : 0;
     if (percent == progress->shown || !isatty(STDERR_FILENO))
         return;

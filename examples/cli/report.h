@@ -23,6 +23,20 @@ bool cli_fail(const char *format, ...) CLI_PRINTF(1, 2);
 /* "lineao: place: warning: text" */
 void cli_warn(const char *place, const char *text);
 
+/* Who hears all that instead of the terminal, and cancels instead of Ctrl-C: for programs with a
+ * window. Any function may be NULL. */
+typedef struct cli_listener {
+    /* "FILE: what is wrong", or a warning */
+    void (*say)(void *user, bool failure, const char *line);
+    void (*progress)(void *user, const char *doing, const char *name, double part); /* 0 .. 1 */
+    bool (*interrupted)(void *user);
+    void *user;
+} cli_listener;
+
+/* From now on, for what the calling thread does; it must outlive that. NULL: the terminal. */
+void cli_listen(const cli_listener *listener);
+const cli_listener *cli_listening(void);
+
 /* Holds Ctrl-C back, so that the work can stop where nothing is half done. */
 void cli_interrupt_hold(void);
 /* Was Ctrl-C pressed? Never cleared. */

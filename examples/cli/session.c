@@ -128,15 +128,19 @@ static bool upload(cli_session *session, const cli_scene *scene) {
 bool cli_session_open(cli_session *session, const char *backend, const cli_scene *scene,
                       const cli_shot *shot, uint32_t view_flags) {
     lao_backend functions;
+    memset(session, 0, sizeof *session);
+    session->backend = backend;
+    return open_backend(session, &functions) &&
+           cli_session_start(session, &functions, scene, shot, view_flags);
+}
+
+bool cli_session_start(cli_session *session, const lao_backend *functions, const cli_scene *scene,
+                       const cli_shot *shot, uint32_t view_flags) {
     lao_desc desc;
     lao_view_desc size;
-    memset(session, 0, sizeof *session);
     memset(&desc, 0, sizeof desc);
     memset(&size, 0, sizeof size);
-    session->backend = backend;
-    if (!open_backend(session, &functions))
-        return false;
-    desc.backend = &functions;
+    desc.backend = functions;
     desc.logger.log = on_log;
     desc.logger.user = session;
     desc.modules = &scene->module;
@@ -191,7 +195,8 @@ static bool submit(cli_session *session, lao_frame *frame) {
     return lao_render(session->context, frame) == LAO_OK;
 }
 
-bool cli_session_render(cli_session *session, const cli_shot *shot, uint32_t frame_flags) {
+void cli_session_frame(const cli_session *session, const cli_shot *shot, uint32_t frame_flags,
+                       lao_frame *out) {
     lao_frame frame;
     memset(&frame, 0, sizeof frame);
     frame.view = session->view;
@@ -204,6 +209,12 @@ bool cli_session_render(cli_session *session, const cli_shot *shot, uint32_t fra
     memcpy(frame.background, shot->background, sizeof frame.background);
     memcpy(frame.sphere, shot->sphere, sizeof frame.sphere);
     frame.time = shot->time;
+    *out = frame;
+}
+
+bool cli_session_render(cli_session *session, const cli_shot *shot, uint32_t frame_flags) {
+    lao_frame frame;
+    cli_session_frame(session, shot, frame_flags, &frame);
     double start = now(NULL);
     bool ok = cli_go_on() && use(session) && submit(session, &frame);
     session->milliseconds = 1e3 * (now(NULL) - start);

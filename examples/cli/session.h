@@ -40,6 +40,14 @@ bool cli_session_open(cli_session *session, const char *backend, const cli_scene
                       const cli_shot *shot, uint32_t view_flags);
 void cli_session_close(cli_session *session);
 
+/* The second half of cli_session_open, for a program that has made the backend itself: `session` is
+ * all zero but for `backend` and, where cli_session_render is wanted, `vk`. */
+bool cli_session_start(cli_session *session, const lao_backend *functions, const cli_scene *scene,
+                       const cli_shot *shot, uint32_t view_flags);
+/* What cli_session_render hands to lao_render; borrows the session's sets. */
+void cli_session_frame(const cli_session *session, const cli_shot *shot, uint32_t frame_flags,
+                       lao_frame *out);
+
 /* Draws one frame and waits for it. frame_flags: LAO_FRAME_... besides those of the shot. False:
  * reported. */
 bool cli_session_render(cli_session *session, const cli_shot *shot, uint32_t frame_flags);

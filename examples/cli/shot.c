@@ -85,7 +85,9 @@ bool cli_shot_make(const cli_options *options, const cli_scene *scene, cli_shot 
     find_sphere(scene, out->sphere);
     if (!options->camera)
         fit_camera(options, scene, aspect, &out->camera);
-    else if (!camera_read(options->camera, &out->camera, error))
+    else if (!(*options->camera == '{'
+                   ? camera_parse("--camera", options->camera, &out->camera, error)
+                   : camera_read(options->camera, &out->camera, error)))
         return cli_fail("%s", error);
     cli_shot_aim(scene, out);
     return true;

@@ -51,6 +51,14 @@ static void time_line(const io_lines *lines, const io_attribute *array, uint32_t
     }
 }
 
+/* The scene's time for lines that begin at 0. */
+static void run_from_zero(cli_scene *scene, const cli_set *set) {
+    scene->beat[0] = scene->beat[1] = 0;
+    for (uint32_t i = 0; i < set->lines.point_count; i++)
+        scene->beat[1] = fmax(scene->beat[1], isfinite(set->times[i]) ? (double)set->times[i] : 0);
+    scene->period = scene->beat[1];
+}
+
 /* Steady lines without times get them from their speed. False: reported. */
 static bool make_times(cli_scene *scene, cli_set *set) {
     io_lines *lines = &set->lines;
@@ -78,9 +86,7 @@ static bool make_times(cli_scene *scene, cli_set *set) {
     lines->point_attributes = rows;
     rows[lines->point_attribute_count++] = made;
     set->times = made.data;
-    for (uint32_t i = 0; i < lines->point_count; i++)
-        scene->beat[1] = fmax(scene->beat[1], isfinite(made.data[i]) ? (double)made.data[i] : 0);
-    scene->period = scene->beat[1];
+    run_from_zero(scene, set);
     return true;
 }
 
@@ -114,7 +120,7 @@ static bool load_flow(cli_wall *wall, bool volume) {
 }
 
 /* Streamlines of a steady flow run from their first point on, as L14's pathlines do. */
-static void start_lines(cli_set *set) {
+static void start_lines(cli_scene *scene, cli_set *set) {
     float *times = (float *)(uintptr_t)set->times; /* ours: an attribute of the set */
     for (uint32_t line = 0; line < set->lines.line_count; line++) {
         uint32_t first = set->lines.offsets[line], end = set->lines.offsets[line + 1];
@@ -122,6 +128,7 @@ static void start_lines(cli_set *set) {
         for (uint32_t i = first; i < end; i++)
             times[i] -= start;
     }
+    run_from_zero(scene, set);
 }
 
 /* Lines are drawn where they are lit: as L14's highlight of whole lines but the dark parts do not
@@ -138,7 +145,7 @@ static bool load_lines(cli_wall *wall) {
     if (!volume) /* not our copy of the options */
         set->source = &wall->line_source;
     if (volume && !(s->period > 0))
-        start_lines(set);
+        start_lines(&wall->scene, set);
     if (!(s->set & LAO_SET(trail)) && !(s->trail > 0))
         s->trail = LAO_TRAIL_TAPER;
     return true;

@@ -183,10 +183,11 @@ static void lay_lattice(cli_wall *wall, flow4d_volume *volume) {
     uint32_t cells = wall->options->surface.grid ? wall->options->surface.grid : CELLS;
     double low[3] = {1e30, 1e30, 1e30}, high[3] = {-1e30, -1e30, -1e30}, longest = 0;
     for (uint32_t i = 0; i < tree->node_count; i++) {
-        const float *p = &tree->nodes[i].x;
+        const lao_v4 n = tree->nodes[i];
+        const double at[3] = {(double)n.x, (double)n.y, (double)n.z};
         for (int k = 0; k < 3; k++) {
-            low[k] = fmin(low[k], (double)p[k] - (double)p[3]);
-            high[k] = fmax(high[k], (double)p[k] + (double)p[3]);
+            low[k] = fmin(low[k], at[k] - (double)n.w);
+            high[k] = fmax(high[k], at[k] + (double)n.w);
         }
     }
     for (int k = 0; k < 3; k++)

@@ -17,6 +17,7 @@ struct cli_threads {
     uint32_t next, count, busy; /* next index to take; workers that are inside fn */
     bool quit;
     cli_progress *progress;
+    const cli_listener *listener; /* of the calling thread */
 };
 
 /* Takes indices until none is left; the lock is held before and after. */
@@ -31,6 +32,7 @@ static void work(cli_threads *t) {
 
 static void *worker(void *user) {
     cli_threads *t = user;
+    cli_listen(t->listener);
     pthread_mutex_lock(&t->lock);
     while (!t->quit) {
         if (t->next < t->count) {
@@ -83,6 +85,7 @@ cli_threads *cli_threads_start(void) {
     if (!t)
         return NULL;
     memset(t, 0, sizeof *t);
+    t->listener = cli_listening();
     pthread_mutex_init(&t->lock, NULL);
     pthread_cond_init(&t->begin, NULL);
     pthread_cond_init(&t->end, NULL);

@@ -4,7 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { MESSAGE_SIZE = 1024 };
+enum { MESSAGE_SIZE = 1024, MOST_EXTENSIONS = 32 };
 
 typedef struct command_slot {
     VkCommandBuffer commands;
@@ -65,13 +65,30 @@ static bool has_validation(void) {
     return false;
 }
 
+/* Adds to the list; false: there is no room. */
+static bool add_extensions(const char **list, uint32_t *count, const char *const *names,
+                           uint32_t name_count) {
+    if (name_count > MOST_EXTENSIONS - *count)
+        return false;
+    for (uint32_t i = 0; i < name_count; i++)
+        list[(*count)++] = names[i];
+    return true;
+}
+
 static bool open_instance(host_vk *host, const host_vk_desc *desc, char *error) {
     static const char *const layer[] = {"VK_LAYER_KHRONOS_validation"};
-    static const char *const extensions[] = {VK_EXT_DEBUG_UTILS_EXTENSION_NAME,
-                                             VK_EXT_VALIDATION_FEATURES_EXTENSION_NAME};
+    const char *extensions[MOST_EXTENSIONS];
     static const VkValidationFeatureEnableEXT enables[] = {
         VK_VALIDATION_FEATURE_ENABLE_SYNCHRONIZATION_VALIDATION_EXT};
     bool hazards = desc->synchronization_validation, validation = desc->validation || hazards;
+    uint32_t count = 0;
+    if (validation)
+        extensions[count++] = VK_EXT_DEBUG_UTILS_EXTENSION_NAME;
+    if (hazards)
+        extensions[count++] = VK_EXT_VALIDATION_FEATURES_EXTENSION_NAME;
+    if (!add_extensions(extensions, &count, desc->instance_extensions,
+                        desc->instance_extension_count))
+        return fail(error, "too many extensions", VK_ERROR_EXTENSION_NOT_PRESENT);
     if (validation && !has_validation()) {
         return fail(error, "no VK_LAYER_KHRONOS_validation; install vulkan-validationlayers",
                     VK_ERROR_LAYER_NOT_PRESENT);
@@ -102,9 +119,7 @@ static bool open_instance(host_vk *host, const host_vk_desc *desc, char *error) 
         .pApplicationInfo = &application,
         .enabledLayerCount = validation ? 1 : 0,
         .ppEnabledLayerNames = layer,
-        .enabledExtensionCount = hazards      ? 2
-                                 : validation ? 1
-                                              : 0,
+        .enabledExtensionCount = count,
         .ppEnabledExtensionNames = extensions,
     };
     if (!check(error, "no instance", vkCreateInstance(&info, NULL, &host->instance)))
@@ -174,10 +189,15 @@ static void keep_supported(VkPhysicalDeviceFeatures *wanted, VkPhysicalDevice ph
     memcpy(wanted, want, sizeof want);
 }
 
-static bool open_device(host_vk *host, char *error) {
-    static const char *const extensions[] = {VK_KHR_DYNAMIC_RENDERING_EXTENSION_NAME,
-                                             VK_KHR_SYNCHRONIZATION_2_EXTENSION_NAME};
+static bool open_device(host_vk *host, const host_vk_desc *desc, char *error) {
+    static const char *const aliases[] = {VK_KHR_DYNAMIC_RENDERING_EXTENSION_NAME,
+                                          VK_KHR_SYNCHRONIZATION_2_EXTENSION_NAME};
     bool core = host->api_version >= VK_API_VERSION_1_3;
+    const char *extensions[MOST_EXTENSIONS];
+    uint32_t count = 0;
+    if (!add_extensions(extensions, &count, aliases, core ? 0 : 2) ||
+        !add_extensions(extensions, &count, desc->device_extensions, desc->device_extension_count))
+        return fail(error, "too many extensions", VK_ERROR_EXTENSION_NOT_PRESENT);
     const float priority = 1.0f;
     const VkDeviceQueueCreateInfo queue = {
         .sType = VK_STRUCTURE_TYPE_DEVICE_QUEUE_CREATE_INFO,
@@ -199,7 +219,7 @@ static bool open_device(host_vk *host, char *error) {
         .pNext = &rendering,
         .queueCreateInfoCount = 1,
         .pQueueCreateInfos = &queue,
-        .enabledExtensionCount = core ? 0 : 2,
+        .enabledExtensionCount = count,
         .ppEnabledExtensionNames = extensions,
         .pEnabledFeatures = &host->features,
     };
@@ -249,7 +269,7 @@ bool host_vk_open(const host_vk_desc *desc, host_vk **out, char error[HOST_VK_ER
     host->message = desc->message;
     host->user = desc->user;
     if (!open_instance(host, desc, error) || !choose_device(host, error) ||
-        !open_device(host, error) || !open_commands(host, error)) {
+        !open_device(host, desc, error) || !open_commands(host, error)) {
         host_vk_close(host);
         return false;
     }
@@ -517,7 +537,7 @@ static bool copy(host_vk *host, const host_vk_image *image, VkImageLayout layout
         .imageSubresource = {image->aspect, 0, 0, 1},
         .imageExtent = {image->width, image->height, 1},
     };
-    full_barrier(commands, image, layout, here);
+    full_barrier(commands, image, write ? VK_IMAGE_LAYOUT_UNDEFINED : layout, here);
     if (write)
         vkCmdCopyBufferToImage(commands, buffer, image->image, here, 1, &region);
     else

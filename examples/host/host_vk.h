@@ -21,6 +21,10 @@ typedef struct host_vk_desc {
     VkPhysicalDeviceFeatures features; /* wanted: those that the device has are enabled */
     host_vk_message_fn message;        /* may be NULL */
     void *user;
+    const char *const *instance_extensions; /* (Optional) further ones, for a window */
+    uint32_t instance_extension_count;
+    const char *const *device_extensions;
+    uint32_t device_extension_count;
 } host_vk_desc;
 
 typedef struct host_vk host_vk;
@@ -82,7 +86,7 @@ size_t host_vk_texel_size(VkFormat format);
  * memory order; pixels has width * height * host_vk_texel_size(format) bytes. Waits. */
 bool host_vk_image_read(host_vk *host, const host_vk_image *image, VkImageLayout layout,
                         void *pixels);
-/* The same the other way round. */
+/* The same the other way round; whatever the image held is gone, and any layout may have been. */
 bool host_vk_image_write(host_vk *host, const host_vk_image *image, VkImageLayout layout,
                          const void *pixels);
 

@@ -432,7 +432,10 @@ static void volume_as_mesh(void **state) {
     cJSON_Delete(json);
     cJSON_Delete(report);
     program_free(&run);
-    expect_ok(RUN("surface duct.vtk --seeds 50 " SMALL "-o duct.png"));
+    expect_ok(RUN("surface duct.vtk --seeds 50 --frames 2 " SMALL "-o duct_%%d.png"));
+    expect_ok(RUN("surface duct.vtk --seeds 50 --time 0 --span cycle " SMALL "-o zero.png"));
+    assert_true(same_files("duct_0.png", "zero.png")); /* frames begin where lines do */
+    assert_false(same_files("duct_0.png", "duct_1.png"));
     expect_fault(RUN("surface duct.vtk --lines line.vtk -o x.png"), 2, "--lines");
 }
 

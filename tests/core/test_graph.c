@@ -212,6 +212,10 @@ static void pass_useless(tables *t) {
     t->passes[4].reads[0] = at("b", LAO_LEVEL_INDEX, 0, LAO_PHASE_THIS, LAO_LOAD_DISCARD);
 }
 
+static void items_unknown(tables *t) {
+    t->images[1].size = LAO_SIZE_ITEMS;
+    t->images[1].width = LAO_FURTHER_ITEMS + 1;
+}
 static void previous_not_kept(tables *t) {
     t->passes[1].reads[1] = at("a", LAO_LEVEL_SAME, 0, LAO_PHASE_PREVIOUS, LAO_LOAD_DISCARD);
 }
@@ -242,6 +246,7 @@ static void too_many_settings(tables *t) {
 
 static const fault faults[] = {
     {first_repeats_with_none, "pass 'first' has no row before it to repeat with"},
+    {items_unknown, "image 'a' is of an unknown kind of items"},
     {previous_not_kept, "pass 'second' reads the last frame's 'a', which is not kept"},
     {previous_not_written, "pass 'last' reads 'c', which nothing has written"},
     {preset_unknown, "module 'small' has no preset 'no_such'"},

@@ -22,7 +22,10 @@ static const lao_setting_row settings[2] = {
     {"probe_on", LAO_SETTING_BOOL, 0, 1, 1, 1, "", "", "draw the probe"},
     {"probe_gain", LAO_SETTING_FLOAT, 0, 10, 2, 0, "", "", "a number for the shader"}};
 
+static const char *const constants[3] = {"has_scales", "has_corners", "probe_gain"};
+
 typedef struct probe {
+    lao_shader shader;
     lao_image_row images[2];
     lao_pass_row passes[4];
     lao_module module;
@@ -89,6 +92,11 @@ static void probe_fill(probe *p) {
     p->module.setting_count = 2;
     p->module.buffers = buffers;
     p->module.buffer_count = BUFFERS;
+    p->shader.name = "none";
+    p->shader.constants = constants;
+    p->shader.constant_count = 3;
+    p->module.shaders = &p->shader;
+    p->module.shader_count = 1;
     p->modules[0] = &p->module;
 }
 
@@ -237,6 +245,31 @@ static void items_have_an_image(void **state) {
         assert_int_equal(steps_of("measure", &step), 2);
         assert_int_equal(step->height, 489);
     }
+    { /* of another kind */
+        f.probe.images[0].width = 3;
+        f.source.further_items[2] = 5000;
+        assert_int_equal(lao_object_update(f.context, f.object, &f.source), LAO_OK);
+        assert_int_equal(lao_render(f.context, &f.frame), LAO_OK);
+        assert_int_equal(steps_of("measure", &step), 2);
+        assert_int_equal(step->width, 2048);
+        assert_int_equal(step->height, 3);
+    }
+    end(&f);
+}
+
+static void a_shader_knows_what_a_set_has(void **state) {
+    const lao_plan_step *step = NULL;
+    lao_object without;
+    fixture f;
+    (void)state;
+    begin(&f);
+    f.source.buffer_count = 1;
+    assert_int_equal(lao_object_create(f.context, &f.source, &without), LAO_OK);
+    f.sets[0].object = without;
+    assert_int_equal(lao_render(f.context, &f.frame), LAO_OK);
+    assert_int_equal(steps_of("draw", &step), 1);
+    assert_int_equal(step->constants[0], 0);
+    assert_int_equal(step->constants[1], 1);
     end(&f);
 }
 
@@ -251,6 +284,9 @@ static void a_step_finds_its_buffers(void **state) {
     begin(&f);
     assert_int_equal(lao_render(f.context, &f.frame), LAO_OK);
     assert_int_equal(steps_of("draw", &step), 1);
+    assert_int_equal(step->constants[0], 1);
+    assert_int_equal(step->constants[1], 1);
+    assert_int_equal(step->constants[2], 2);
     /* the line module's two buffers stand before ours */
     assert_int_equal(step->reads[1], LAO_READ_BUFFER + 2 + CORNERS_ROW);
     assert_true(LAO_READ_IS_BUFFER(step->reads[1]));
@@ -511,6 +547,7 @@ int main(void) {
         cmocka_unit_test(rows_run_stage_by_stage),
         cmocka_unit_test(a_set_without_the_buffers_has_no_such_steps),
         cmocka_unit_test(items_have_an_image),
+        cmocka_unit_test(a_shader_knows_what_a_set_has),
         cmocka_unit_test(a_step_finds_its_buffers),
         cmocka_unit_test(settings_of_the_module),
         cmocka_unit_test(sets_that_occlude_each_other),

@@ -1,0 +1,65 @@
+/* What is open: the words of one command of the program (render, vessel or surface), the data that
+ * they name, and what has been edited since. A document writes itself as a command line. */
+#ifndef LINEAO_VIEW_DOCUMENT_H
+#define LINEAO_VIEW_DOCUMENT_H
+
+#include "session.h"
+#include "surface.h"
+#include "vessel.h"
+#include "writing.h"
+
+/* One struct of settings: those of the lines, of the tree or of the surface. */
+typedef struct document_settings {
+    const lao_module *module;
+    const char *title; /* "Lines", or the name of the set */
+    void *now;         /* owned by the scene: uint64_t set; float values[] */
+    void *base;        /* owned: as loaded, for reset */
+    uint64_t edited;
+    uint32_t set;   /* whose: index in the scene */
+    bool read_only; /* there only for the picture's common settings */
+} document_settings;
+
+typedef struct document {
+    cli_command_bit command;
+    const char *verb; /* "render", "vessel" or "surface" */
+    char **words;     /* owned; without the command's name */
+    uint32_t word_count;
+    cli_options options;
+    cli_scene lines;
+    cli_tree tree;
+    cli_wall wall;
+    cli_scene *scene;            /* in one of the three */
+    cli_shot shot;               /* as the words ask for it */
+    document_settings *settings; /* owned */
+    uint32_t settings_count;
+    bool timed; /* has points with times */
+} document;
+
+/* Opens what the words name: a command and its flags, or files that tell by themselves which. For
+ * any thread; failures go to its listener. NULL: reported. */
+document *document_open(const char *const *words, uint32_t count);
+void document_close(document *doc);
+
+/* A name for the title: the first file, or the scene. */
+const char *document_name(const document *doc);
+
+/* Gives one setting a value; or that which it was loaded with. `index` counts document.settings. */
+void document_set(document *doc, uint32_t index, int setting, float value);
+void document_reset(document *doc, uint32_t index, int setting);
+float document_value(const document *doc, uint32_t index, int setting);
+/* Must the document be opened again for an edit of this setting to show? */
+bool document_reloads(const document *doc, uint32_t index, int setting);
+
+/* Shows the lines of a time, or all of them. */
+void document_show_time(document *doc, bool shown);
+bool document_shows_time(const document *doc);
+
+/* A cli_picture_edit of a document: the legends that its words ask for. */
+bool document_surround(void *user, picture *p);
+
+/* "lineao render a.trk --set ... --camera '...' --size WxH -o picture.png", for a shell; the words
+ * alone for `words` (not quoted, one a line). For free(). NULL: reported. */
+char *document_command(const document *doc, const cli_shot *shot, const char *out);
+char *document_words(const document *doc, const cli_shot *shot);
+
+#endif

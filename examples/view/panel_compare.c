@@ -1,0 +1,236 @@
+/* Side by side: the widgets, and the divided picture. */
+#include "view.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+void compare_end(view *v) {
+    compare_stop(v->compare);
+    v->compare = NULL;
+    v->dirty = true;
+}
+
+/* The i-th image of the frame graph that a dump would have, or the picture. */
+static const lao_image_row *image_row(const view *v, uint32_t i) {
+    const lao_module *modules[2] = {lao_lines_module(), v->doc->scene->module};
+    for (int m = 0; m < 2 && modules[m]; m++) {
+        for (uint32_t k = 0; k < modules[m]->image_count; k++) {
+            const lao_image_row *row = &modules[m]->images[k];
+            if (row->format != LAO_FORMAT_HOST && !(row->flags & LAO_IMAGE_IMPORT) &&
+                row->format != LAO_FORMAT_D32F && i-- == 0)
+                return row;
+        }
+    }
+    return NULL;
+}
+
+static void choose_image(view *v) {
+    comparison *c = &v->comparison;
+    char names[4096] = "";
+    int chosen = 0, level = (int)c->level;
+    const lao_image_row *row;
+    for (uint32_t i = 0; (row = image_row(v, i)) != NULL; i++) {
+        size_t used = strlen(names);
+        snprintf(names + used, sizeof names - used, "%s%s", i ? "|" : "", row->name);
+        if (strcmp(row->name, c->image) == 0)
+            chosen = (int)i;
+    }
+    ui_width(-1);
+    if (ui_combo("##image", &chosen, names) && (row = image_row(v, (uint32_t)chosen)) != NULL) {
+        snprintf(c->image, sizeof c->image, "%s", row->name);
+        v->dirty = true;
+    }
+    ui_help("any image of the frame graph; out is the picture. Numbers are shown between their "
+            "least and greatest");
+    ui_width(-1);
+    if (ui_combo("##level", &level,
+                 "level 0|level 1|level 2|level 3|level 4|level 5|level 6|level 7")) {
+        c->level = (uint32_t)level;
+        v->dirty = true;
+    }
+    ui_help("level of an image that has several");
+}
+
+static void choose_side(view *v, int side) {
+    compare_look *look = &v->comparison.looks[side];
+    float width;
+    ui_group(side);
+    ui_widget_name(side ? "right" : "left");
+    ui_text_dim(side ? "Right" : "Left");
+    ui_width_left(&width);
+    ui_width(0.45f * width);
+    v->dirty = ui_combo("##backend", &look->backend, "OpenGL|Vulkan") || v->dirty;
+    ui_same_line();
+    ui_width(-1);
+    v->dirty = ui_combo("##preset", &look->preset, "settings as they are|default|classic|paper") ||
+               v->dirty;
+    ui_widget_name(NULL);
+    ui_group_end();
+}
+
+static void pass_times(const compare_result *const r[2]) {
+    char text[64];
+    if (!ui_table("passes", 3))
+        return;
+    ui_cell();
+    ui_text("frame");
+    for (int k = 0; k < 2; k++) {
+        snprintf(text, sizeof text, "%.1f ms", r[k]->milliseconds);
+        ui_cell();
+        ui_text(text);
+    }
+    for (uint32_t i = 0; i < r[0]->pass_count || i < r[1]->pass_count; i++) {
+        const lao_timing *t = i < r[0]->pass_count ? &r[0]->passes[i] : &r[1]->passes[i];
+        snprintf(text, sizeof text, t->level ? "%s %u" : "%s", t->pass, t->level);
+        ui_cell();
+        ui_text(text);
+        for (int k = 0; k < 2; k++) {
+            snprintf(text, sizeof text, "%.2f",
+                     i < r[k]->pass_count ? r[k]->passes[i].milliseconds : 0);
+            ui_cell();
+            ui_text(i < r[k]->pass_count ? text : "");
+        }
+    }
+    ui_table_end();
+}
+
+void panel_compare(view *v) {
+    comparison *c = &v->comparison;
+    const compare_result *r[2];
+    char text[128];
+    bool on = v->compare != NULL;
+    if (ui_toggle("Two pictures side by side", &on)) {
+        if (on)
+            v->compare = compare_start(v->doc, &v->listener);
+        else
+            compare_end(v);
+        v->dirty = true;
+    }
+    if (!v->compare) {
+        ui_text_dim("The same view on OpenGL and Vulkan, or with two presets; every image of the "
+                    "frame graph, and the time of every pass.");
+        return;
+    }
+    choose_side(v, 0);
+    choose_side(v, 1);
+    ui_text_dim("Image");
+    choose_image(v);
+    ui_toggle("Difference", &c->difference);
+    ui_help("|left - right|, amplified");
+    if (c->difference) {
+        ui_same_line();
+        ui_width(-1);
+        c->stale = ui_slider("##gain", &c->gain, 1, 255, "x %.0f") || c->stale;
+    }
+    compare_results(v->compare, r);
+    if (compare_busy(v->compare))
+        ui_text("drawing ...");
+    else if (!r[0]->pixels || !r[1]->pixels)
+        ui_text_wrapped("This image does not exist with these settings.");
+    else if (c->bits < 0)
+        ui_text("the images have different sizes");
+    else {
+        snprintf(text, sizeof text, "%lld bits differ", (long long)c->bits);
+        ui_text(text);
+    }
+    ui_scroll("times", 0);
+    pass_times(r);
+    ui_scroll_end();
+}
+
+/* Asks for what is out of date, and takes what is done to the window. */
+void compare_draw(view *v) {
+    comparison *c = &v->comparison;
+    const window_backend *backend = v->window.backend;
+    const compare_result *r[2];
+    if (v->dirty && v->picture.width > 0 && v->picture.height > 0) {
+        cli_shot shot = v->shot;
+        shot.width = (uint32_t)v->picture.width;
+        shot.height = (uint32_t)v->picture.height;
+        cli_shot_aim(v->doc->scene, &shot);
+        compare_ask(v->compare, &shot, c->looks, c->image, c->level);
+        v->dirty = false;
+    }
+    bool news = compare_take(v->compare);
+    compare_results(v->compare, r);
+    if (news) {
+        c->ready = r[0]->pixels && r[1]->pixels;
+        c->bits = compare_bits(r[0], r[1]);
+        for (int k = 0; k < 2 && c->ready; k++)
+            c->ready =
+                backend->upload(&v->window, SLOT_LEFT + k, r[k]->width, r[k]->height, r[k]->pixels);
+        trace(v, "compared %s %ux%u %lld", c->image, r[0]->width, r[0]->height, (long long)c->bits);
+    }
+    if ((news || c->stale) && c->ready && c->difference) {
+        uint8_t *pixels = compare_difference(r[0], r[1], c->gain);
+        if (pixels)
+            backend->upload(&v->window, SLOT_DIFFERENCE, r[0]->width, r[0]->height, pixels);
+        free(pixels);
+        c->stale = false;
+    }
+    c->size[0][0] = (int)r[0]->width;
+    c->size[0][1] = (int)r[0]->height;
+    c->size[1][0] = (int)r[1]->width;
+    c->size[1][1] = (int)r[1]->height;
+    c->stale = c->stale || (c->difference && !c->differed);
+    c->differed = c->difference;
+}
+
+/* A part of one side: `from` and `to` in parts of the picture's width. */
+static void show_part(const view *v, int slot, const int size[2], double from, double to) {
+    int a = (int)round(from * v->picture.width), b = (int)round(to * v->picture.width);
+    int x = (int)round(from * size[0]), end = (int)round(to * size[0]);
+    v->window.backend->show(
+        (window *)(uintptr_t)&v->window, slot, (window_rect){x, 0, end - x, size[1]},
+        (window_rect){v->picture.x + a, v->picture.y, b - a, v->picture.height});
+}
+
+void compare_show(view *v) {
+    const comparison *c = &v->comparison;
+    if (!c->ready || v->picture.width < 2)
+        return;
+    if (c->difference) {
+        show_part(v, SLOT_DIFFERENCE, c->size[0], 0, 1);
+        return;
+    }
+    show_part(v, SLOT_LEFT, c->size[0], 0, c->divider);
+    show_part(v, SLOT_RIGHT, c->size[1], c->divider, 1);
+}
+
+static const char *side_name(const view *v, int side, char text[64]) {
+    static const char *const presets[] = {"", " default", " classic", " paper"};
+    const compare_look *look = &v->comparison.looks[side];
+    snprintf(text, 64, "%s%s", look->backend ? "Vulkan" : "OpenGL", presets[look->preset]);
+    return text;
+}
+
+void compare_marks(view *v) {
+    const comparison *c = &v->comparison;
+    char text[64];
+    float x = (float)v->picture.x + (float)c->divider * (float)v->picture.width;
+    float top = (float)v->picture.y, bottom = top + (float)v->picture.height, s = ui_scale();
+    if (c->difference)
+        return;
+    ui_draw_line(true, x, top, x, bottom, 0xc0202020, 2 * s);
+    ui_draw_disc(true, x, (top + bottom) / 2, 8 * s, 0xff202020);
+    ui_draw_disc(true, x, (top + bottom) / 2, 5 * s, 0xffe09a4a);
+    for (int side = 0; side < 2; side++) {
+        side_name(v, side, text);
+        float wide = ui_text_width(text), at = side ? x + 12 * s : x - 12 * s - wide;
+        ui_draw_box(true, at - 4 * s, top + 6 * s, at + wide + 4 * s,
+                    top + 8 * s + ui_text_height(), 0xc0202020);
+        ui_draw_text(true, at, top + 7 * s, 0xffffffff, text);
+    }
+}
+
+bool compare_grabs(const view *v, double x) {
+    double at = v->picture.x + v->comparison.divider * v->picture.width;
+    return v->compare && !v->comparison.difference && fabs(x - at) < 9 * (double)ui_scale();
+}
+
+void compare_divide(view *v, double x) {
+    double part = (x - v->picture.x) / fmax(1, v->picture.width);
+    v->comparison.divider = fmax(0.02, fmin(0.98, part));
+}

@@ -1,0 +1,124 @@
+/* Widgets out of the settings tables: a range, a unit and a help live there and nowhere else. */
+#include "view.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* A range that spans decades, or has no end worth a slider, is dragged instead. */
+static bool edit_number(const lao_setting_row *row, float *value) {
+    float span = row->maximum - row->minimum;
+    char format[32];
+    snprintf(format, sizeof format, row->type == LAO_SETTING_INT ? "%%.0f %s" : "%%.4g %s",
+             strcmp(row->unit, "%") == 0 ? "%%" : row->unit);
+    if (span <= 100)
+        return ui_slider("##value", value, row->minimum, row->maximum, format);
+    float speed = row->type == LAO_SETTING_INT ? 0.2f : fmaxf(fabsf(*value), 1e-3f) * 0.01f;
+    return ui_drag("##value", value, speed, row->minimum, row->maximum, format);
+}
+
+static bool edit(const lao_setting_row *row, float *value) {
+    bool on = *value > 0;
+    int chosen = (int)*value;
+    ui_width(-1);
+    switch (row->type) {
+    case LAO_SETTING_BOOL:
+        if (!ui_toggle("##value", &on))
+            return false;
+        *value = on ? 1.0f : 0.0f;
+        return true;
+    case LAO_SETTING_ENUM:
+        if (!ui_combo("##value", &chosen, row->choices))
+            return false;
+        *value = (float)chosen;
+        return true;
+    default:
+        return edit_number(row, value);
+    }
+}
+
+static void explain(const lao_setting_row *row) {
+    char text[512], low[32], high[32], standard[64];
+    cli_shortest(row->minimum, low, sizeof low);
+    cli_shortest(row->maximum, high, sizeof high);
+    cli_setting_text(row, row->standard, standard, sizeof standard);
+    if (row->type == LAO_SETTING_FLOAT || row->type == LAO_SETTING_INT)
+        snprintf(text, sizeof text, "%s: %s\n%s .. %s %s, default %s", row->name, row->help, low,
+                 high, row->unit, standard);
+    else
+        snprintf(text, sizeof text, "%s: %s\ndefault %s", row->name, row->help, standard);
+    ui_help(text);
+}
+
+/* "align_intensity" as "align intensity" */
+static void label_of(const lao_setting_row *row, char label[64]) {
+    snprintf(label, 64, "%s", row->name);
+    for (char *c = label; *c; c++)
+        *c = *c == '_' ? ' ' : *c;
+}
+
+static void changed(view *v, uint32_t index, int setting) {
+    trace(v, "set %s %g", v->doc->settings[index].module->settings[setting].name,
+          (double)document_value(v->doc, index, setting));
+    if (document_reloads(v->doc, index, setting))
+        stage_reload(v);
+    stage_changed(v, strcmp(v->doc->settings[index].module->settings[setting].name, "width") == 0);
+}
+
+static void row_of(view *v, uint32_t index, int setting) {
+    document *doc = v->doc;
+    const lao_setting_row *row = &doc->settings[index].module->settings[setting];
+    char label[64];
+    float value = document_value(doc, index, setting);
+    label_of(row, label);
+    if (*v->filter && !strstr(label, v->filter) && !strstr(row->help, v->filter))
+        return;
+    ui_group(setting);
+    ui_cell();
+    ui_text(label);
+    explain(row);
+    ui_cell();
+    ui_widget_name(row->name);
+    if (edit(row, &value)) {
+        document_set(doc, index, setting, row->type == LAO_SETTING_INT ? roundf(value) : value);
+        changed(v, index, setting);
+    }
+    explain(row);
+    ui_cell();
+    if ((doc->settings[index].edited >> setting & 1) && ui_small_button("x##reset")) {
+        document_reset(doc, index, setting);
+        changed(v, index, setting);
+    }
+    ui_widget_name(NULL);
+    ui_group_end();
+}
+
+static void reset_all(view *v) {
+    for (uint32_t i = 0; i < v->doc->settings_count; i++) {
+        for (uint32_t k = 0; k < v->doc->settings[i].module->setting_count; k++) {
+            if (v->doc->settings[i].edited >> k & 1)
+                document_reset(v->doc, i, (int)k);
+        }
+    }
+    stage_changed(v, true);
+}
+
+void panel_settings(view *v) {
+    ui_width(-1);
+    ui_input("##filter", v->filter, sizeof v->filter, "find a setting");
+    ui_text_dim("Rest the pointer on a name to read what it does; x takes an edit back.");
+    if (ui_small_button("Reset all"))
+        reset_all(v);
+    ui_scroll("settings", 0);
+    for (uint32_t i = 0; i < v->doc->settings_count; i++) {
+        ui_group((int)i);
+        if (ui_section(v->doc->settings[i].title, i == 0) && ui_table("rows", 3)) {
+            for (uint32_t k = 0; k < v->doc->settings[i].module->setting_count; k++)
+                row_of(v, i, (int)k);
+            ui_table_end();
+        }
+        ui_group_end();
+    }
+    ui_scroll_end();
+}

@@ -1,0 +1,77 @@
+/* The tree drawn flat (Lichtenberg 2019), beside the picture: what is clicked in one is marked in
+ * the other. */
+#include "view.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+/* sdv_hsv as a colour of the user interface. */
+static uint32_t color_of(float h, float s) {
+    lao_v3 c = sdv_hsv(h, s, 1);
+    return 0xff000000u | (uint32_t)(255 * c.z) << 16 | (uint32_t)(255 * c.y) << 8 |
+           (uint32_t)(255 * c.x);
+}
+
+static void place_of(const ui_area *a, const sdv_layout *layout, uint32_t node, float at[2]) {
+    float border = 8 * ui_scale();
+    at[0] = a->x + border + layout->h[node] * (a->width - 2 * border);
+    at[1] = a->y + border + (1 - layout->s[node]) * (a->height - 2 * border);
+}
+
+/* The reduced node that is drawn nearest to the pointer. */
+static uint32_t nearest(const ui_area *a, const cli_tree *tree) {
+    uint32_t best = SDV_NONE;
+    float least = 1e30f, at[2];
+    for (uint32_t i = 0; i < tree->reduced.node_count; i++) {
+        place_of(a, &tree->layout, i, at);
+        float d = hypotf(at[0] - a->pointer[0], at[1] - a->pointer[1]);
+        if (d < least) {
+            least = d;
+            best = i;
+        }
+    }
+    return best;
+}
+
+static void draw(const ui_area *a, const cli_tree *tree) {
+    const sdv_reduced *reduced = &tree->reduced;
+    for (uint32_t k = 0; k < reduced->node_count; k++) {
+        uint32_t i = reduced->order[k], parent = reduced->parents[i];
+        float from[2], to[2];
+        if (parent == SDV_NONE)
+            continue;
+        place_of(a, &tree->layout, parent, from);
+        place_of(a, &tree->layout, i, to);
+        ui_draw_line(false, from[0], from[1], to[0], to[1],
+                     color_of(tree->layout.h[i], tree->layout.s[i]), 1.5f * ui_scale());
+    }
+}
+
+void panel_tree(view *v) {
+    const cli_tree *tree = &v->doc->tree;
+    float width, at[2];
+    char text[128];
+    ui_text_dim(
+        "The branches side by side, the root above. Click a branch here or in the picture.");
+    ui_width_left(&width);
+    ui_area a = ui_canvas("layout", width, 1.2f * width);
+    ui_draw_box(false, a.x, a.y, a.x + a.width, a.y + a.height, 0xff202224);
+    draw(&a, tree);
+    uint32_t over = a.hovered ? nearest(&a, tree) : SDV_NONE;
+    if (over != SDV_NONE) {
+        place_of(&a, &tree->layout, over, at);
+        ui_draw_disc(false, at[0], at[1], 4 * ui_scale(), 0xffffffff);
+        snprintf(text, sizeof text, "node %u", tree->reduced.nodes[over]);
+        ui_help(text);
+        if (a.pressed && v->picked.point != tree->reduced.nodes[over]) {
+            pick_node(v->doc, tree->reduced.nodes[over], &v->picked);
+            stage_select(v);
+            trace(v, "node %u", v->picked.point);
+        }
+    }
+    if (v->picked.kind == PICKED_TREE && tree->reduced.owners[v->picked.point] != SDV_NONE) {
+        place_of(&a, &tree->layout, tree->reduced.owners[v->picked.point], at);
+        ui_draw_disc(false, at[0], at[1], 5 * ui_scale(), 0xff1030f0);
+    }
+}

@@ -1,0 +1,24 @@
+/* What lies under the pointer: found on the CPU, so that it is the same on every backend. */
+#ifndef LINEAO_VIEW_PICK_H
+#define LINEAO_VIEW_PICK_H
+
+#include "document.h"
+
+typedef enum picked_kind { PICKED_NOTHING, PICKED_LINE, PICKED_TREE, PICKED_SURFACE } picked_kind;
+
+typedef struct picked {
+    picked_kind kind;
+    uint32_t set, line, point; /* of a line: its nearest point; of a tree: `line` is the segment; of
+                                  a surface: `line` is the triangle, `point` its nearest vertex */
+    double at[3];              /* mm, absolute */
+    char text[512];            /* what is known of it, a line each */
+} picked;
+
+/* x, y: -1 .. 1 in the picture, y up. near: how far from a line still counts, in parts of the
+ * picture's height. */
+void pick_at(const document *doc, const cli_shot *shot, double x, double y, double near,
+             picked *out);
+/* A node of a tree, as if it had been clicked. */
+void pick_node(const document *doc, uint32_t node, picked *out);
+
+#endif

@@ -1,0 +1,157 @@
+/* The viewer's state, and who changes it: stage.c draws a document into the window, input.c takes
+ * pointer and keys, player.c the time, pick.c what was clicked, panel*.c the user interface. */
+#ifndef LINEAO_VIEW_VIEW_H
+#define LINEAO_VIEW_VIEW_H
+
+#include "compare.h"
+#include "document.h"
+#include "loader.h"
+#include "pick.h"
+#include "ui.h"
+#include "window.h"
+
+enum { BOOKMARKS = 8, PATH_SIZE = 1024 };
+
+/* How a picture in the window is made while it moves. */
+typedef struct steady {
+    bool on;
+    float wanted;       /* ms between two frames */
+    float scale;        /* of width and height, up to 1 */
+    double last, frame; /* when it moved last, s; ms of the last frame of that kind */
+    bool moving;        /* the canvas in use is the small one */
+} steady;
+
+typedef struct player {
+    bool playing, loop;
+    double speed; /* ms of the data for each second */
+    double last;  /* s */
+} player;
+
+typedef struct pointer {
+    double x, y, pressed_at[2]; /* px */
+    int button;                 /* that was pressed on the picture; -1: none */
+    bool moved, shift;          /* since it was pressed */
+} pointer;
+
+/* How two pictures are shown side by side. */
+typedef struct comparison {
+    compare_look looks[2];
+    char image[COMPARE_NAME];
+    uint32_t level;
+    bool difference, differed, stale; /* stale: the difference is to be made again */
+    float gain;
+    double divider; /* in parts of the picture's width */
+    bool ready;     /* both are in the window's slots */
+    int size[2][2];
+    int64_t bits; /* that differ; -1: sizes do */
+} comparison;
+
+typedef struct view {
+    window window;
+    messages *messages;
+    loader *loader;
+    cli_listener listener;
+    bool trace; /* tells a test what happens, on standard output */
+
+    document *doc; /* NULL: nothing is open yet */
+    cli_session session;
+    bool open; /* the session is */
+    lao_view moving_view;
+    cli_shot shot, fitted; /* fitted: as the document was opened */
+    float bounds[2][3];    /* mm about the scene's origin */
+
+    window_rect picture;         /* where in the window; px */
+    bool dirty;                  /* the canvas is older than what it shows */
+    int drawn[SLOT_CANVASES][2]; /* sizes of what the canvases hold; 0: nothing */
+    bool unfitted;               /* the camera has not been fitted into the window */
+    int awake;                   /* frames of the user interface still to be drawn */
+    bool ground, axes, turntable, panels, quit;
+    double frame_ms;
+    uint32_t frames;
+
+    steady steady;
+    player player;
+    pointer pointer;
+    picked picked;
+    lao_lines picked_lines; /* the selected line once more, on top */
+    compare *compare;       /* NULL: there is one picture */
+    comparison comparison;
+    bool compare_first; /* begin with it */
+    bool dividing;      /* the pointer moves the divider */
+
+    camera_pose bookmarks[BOOKMARKS];
+    bool bookmarked[BOOKMARKS];
+    char words[4 * PATH_SIZE]; /* being edited */
+    char filter[64];
+    char shot_path[PATH_SIZE], bookmark_path[PATH_SIZE];
+    int shot_size[2];
+    uint32_t seen, traced; /* messages that were shown, and told to a test */
+} view;
+
+/* ---- stage.c ---- */
+
+/* Takes over a document, in place of the one before. False: reported, nothing is open. */
+bool stage_open(view *v, document *doc);
+void stage_close(view *v);
+/* Draws the document into its canvas if that is out of date. */
+void stage_draw(view *v);
+/* Lays the canvas into the window. */
+void stage_show(view *v);
+/* The time has changed: what depends on it goes up. */
+void stage_time(view *v);
+/* Settings have changed; `reach`: one of those that say how far the scene reaches. */
+void stage_changed(view *v, bool reach);
+void stage_fit(view *v);
+/* The same for the first picture, where the words ask for no camera. */
+void stage_fit_first(view *v);
+/* Writes the picture as `lineao render` would. False: reported. */
+bool stage_save(view *v, const char *path, uint32_t width, uint32_t height);
+/* Shows the picked line on top. */
+void stage_select(view *v);
+/* Opens the same document again with what was edited. */
+void stage_reload(view *v);
+/* Where a place (mm, absolute) is in the window. False: behind the eye. */
+bool stage_place(const view *v, const double at[3], float place[2]);
+/* Of the whole document: its middle (absolute) and the axis that is up. */
+void stage_up(const view *v, double axis[3]);
+
+/* ---- input.c ---- */
+
+void input_attach(view *v);
+/* Draws of the keys table, for the panel. */
+uint32_t input_keys(uint32_t i, const char **key, const char **help);
+
+/* ---- player.c ---- */
+
+bool player_timed(const view *v);
+void player_range(const view *v, double *first, double *length);
+/* Lets the time pass. Is it playing? */
+bool player_advance(view *v, double now);
+void player_toggle(view *v);
+void player_stop(view *v);
+void player_step(view *v, int steps);
+void player_go(view *v, double time);
+void player_panel(view *v, window_rect place);
+
+/* ---- panel.c ---- */
+
+/* The user interface of a frame; says where the picture goes. */
+void panel_draw(view *v);
+void panel_settings(view *v);
+void panel_tree(view *v);
+
+/* ---- panel_compare.c ---- */
+
+void panel_compare(view *v);
+void compare_end(view *v);
+void compare_draw(view *v);
+void compare_show(view *v);
+void compare_marks(view *v);
+/* Is the divider at that place of the window? */
+bool compare_grabs(const view *v, double x);
+void compare_divide(view *v, double x);
+
+/* One line on standard output for a test, unless nobody listens. */
+void trace(const view *v, const char *format, ...) CLI_PRINTF(2, 3);
+
+#endif

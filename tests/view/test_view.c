@@ -1,0 +1,350 @@
+/* The viewer does what a user asks of it with pointer and keys, on OpenGL and on Vulkan, without a
+ * message of a validation layer or an OpenGL error; and its picture, in the window and in a file,
+ * is bit for bit that of the command line that it names.
+ *
+ * The screen is a server of its own (Xvfb); events come through XTest. */
+#include "desktop.h"
+#include "image.h"
+
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <cmocka.h>
+
+enum { WIDTH = 820, HEIGHT = 520 };
+
+static const char *viewer, *program; /* paths */
+
+typedef struct fixture {
+    const char *backend;
+    desktop *desktop;
+} fixture;
+
+/* Words of the viewer: the backend, a small window, then `more` (ends with NULL). */
+static void start(fixture *f, const char *const *more) {
+    char size[32];
+    const char *words[32] = {"--backend", f->backend, "--window", size, "--scale", "1"};
+    int count = 6;
+    snprintf(size, sizeof size, "%dx%d", WIDTH, HEIGHT);
+    if (strcmp(f->backend, "vk") == 0)
+        words[count++] = "--validate";
+    while (*more)
+        words[count++] = *more++;
+    viewer_start(f->desktop, viewer, words);
+    viewer_hears(f->desktop, "opened");
+    viewer_hears(f->desktop, "frame");
+    viewer_rests(f->desktop, 0.6);
+}
+
+static void quit(fixture *f) {
+    user_types(f->desktop, "q");
+    assert_string_equal(viewer_hears(f->desktop, "messages "), "0");
+    assert_int_equal(viewer_end(f->desktop), 0);
+}
+
+static const char *const flow[] = {"render",  "--scene", "flow",   "--lines", "150",
+                                   "--width", "1",       "--ssaa", "1",       NULL};
+
+/* ---- handling ----------------------------------------------------------------------------- */
+
+static void plays_and_stops(desktop *d) {
+    user_types(d, "space");
+    assert_string_equal(viewer_hears(d, "player "), "plays");
+    for (int i = 0; i < 3; i++)
+        viewer_hears(d, "frame");
+    user_clicks(d, "Pause##play");
+    assert_string_equal(viewer_hears(d, "player "), "pauses");
+    viewer_rests(d, 0.6);
+    user_types(d, "Right");
+    viewer_hears(d, "frame");
+    user_clicks(d, "timeline"); /* its middle */
+    viewer_hears(d, "frame");
+    user_clicks(d, "Stop");
+    assert_string_equal(viewer_hears(d, "player "), "stops");
+}
+
+/* Hides the panels and waits for the picture in their place. */
+static void fill_window(desktop *d) {
+    char size[32];
+    user_types(d, "h");
+    snprintf(size, sizeof size, " %dx%d ok", WIDTH, HEIGHT);
+    for (const char *said = ""; !strstr(said, size);)
+        said = viewer_hears(d, "frame");
+    viewer_hears(d, "tick");
+}
+
+static void turns_and_resizes(desktop *d) {
+    static const int sizes[][2] = {{500, 300}, {900, 700}, {64, 64},   {1200, 90}, {90, 800},
+                                   {701, 501}, {700, 500}, {333, 777}, {820, 520}};
+    for (unsigned button = 1; button <= 3; button++) {
+        user_points(d, 560, 200);
+        user_presses(d, button, true);
+        for (int i = 1; i <= 8; i++)
+            user_points(d, 560 + 10 * i, 200 + 4 * i);
+        user_presses(d, button, false);
+        viewer_hears(d, "frame");
+    }
+    user_presses(d, 4, true); /* the wheel */
+    user_presses(d, 4, false);
+    viewer_hears(d, "frame");
+    for (int i = 0; i < 9; i++) {
+        user_resizes(d, sizes[i][0], sizes[i][1]);
+        user_waits(i % 3 ? 0.02 : 0.2);
+    }
+    viewer_rests(d, 0.6);
+    user_hides(d, true);
+    user_hides(d, false);
+    fill_window(d);
+    user_types(d, "h");
+    assert_false(viewer_said(d, "error"));
+    assert_false(viewer_said(d, "warning vk"));
+}
+
+/* ---- pictures ------------------------------------------------------------------------------ */
+
+/* Runs the copied command line with `output` in place of its own; pictures must be equal. */
+static void run_command(const char *command, const char *output) {
+    char line[8192];
+    assert_true(strncmp(command, "lineao ", 7) == 0);
+    snprintf(line, sizeof line, "'%s' %s", program, command + 7);
+    char *out = strstr(line, " -o ");
+    assert_non_null(out);
+    snprintf(out, sizeof line - (size_t)(out - line), " -o %s", output);
+    assert_int_equal(system(line), 0);
+}
+
+static void assert_same_file(const char *a, const char *b) {
+    char error[IMAGE_ERROR_SIZE];
+    uint32_t size[2][2];
+    uint8_t *pixels[2];
+    assert_true(image_read_png(a, 3, &size[0][0], &size[0][1], &pixels[0], error));
+    assert_true(image_read_png(b, 3, &size[1][0], &size[1][1], &pixels[1], error));
+    assert_memory_equal(size[0], size[1], sizeof size[0]);
+    assert_memory_equal(pixels[0], pixels[1], (size_t)size[0][0] * size[0][1] * 3);
+    free(pixels[0]);
+    free(pixels[1]);
+}
+
+/* The window with the picture alone, against the command line at its size. */
+static void assert_same_window(desktop *d, const char *path) {
+    char error[IMAGE_ERROR_SIZE];
+    uint32_t width, height;
+    uint8_t *pixels, *seen;
+    assert_true(image_read_png(path, 3, &width, &height, &pixels, error));
+    seen = screen_picture(d, 0, 0, (int)width, (int)height);
+    assert_memory_equal(seen, pixels, (size_t)width * height * 3);
+    free(seen);
+    free(pixels);
+}
+
+/* A turn, an edit, a picture, its command line. */
+static void writes_what_the_program_writes(desktop *d, const char *setting) {
+    char command[8192], name[64];
+    user_points(d, 560, 200);
+    user_presses(d, 1, true);
+    user_points(d, 600, 240);
+    user_points(d, 640, 260);
+    user_presses(d, 1, false);
+    user_clicks(d, "Look");
+    snprintf(name, sizeof name, "%s ##value", setting);
+    user_clicks(d, name);
+    viewer_hears(d, "set ");
+    user_clicks(d, "Save");
+    user_clicks(d, "As in the window");
+    user_clicks(d, "Save picture");
+    assert_string_equal(viewer_hears(d, "saved "), "picture.png");
+    user_clicks(d, "Copy command line");
+    snprintf(command, sizeof command, "%s", viewer_hears(d, "command "));
+    assert_non_null(strstr(command, setting));
+    run_command(command, "program.png");
+    assert_same_file("picture.png", "program.png");
+}
+
+static void saves_surfaces(void **state) {
+    static const char *const words[] = {"surface", "--ssaa", "1", NULL};
+    fixture *f = *state;
+    start(f, words);
+    writes_what_the_program_writes(f->desktop, "opacity");
+    quit(f);
+}
+
+static void saves_trees(void **state) {
+    static const char *const words[] = {"vessel", "--nodes", "60", "--grid",
+                                        "32",     "--ssaa",  "1",  NULL};
+    fixture *f = *state;
+    start(f, words);
+    writes_what_the_program_writes(f->desktop, "shadow_ratio");
+    quit(f);
+}
+
+static void shows_what_the_program_writes(desktop *d) {
+    char command[1024];
+    user_types(d, "g");
+    user_types(d, "x");
+    user_types(d, "1");
+    fill_window(d);
+    user_types(d, "c"); /* copies the command line of what is seen */
+    snprintf(command, sizeof command, "%s", viewer_hears(d, "command "));
+    run_command(command, "window.png");
+    assert_same_window(d, "window.png");
+    user_types(d, "h");
+}
+
+/* ---- files --------------------------------------------------------------------------------- */
+
+static void write_file(const char *path, const char *text) {
+    FILE *file = fopen(path, "w");
+    assert_non_null(file);
+    fputs(text, file);
+    fclose(file);
+}
+
+static void opens_what_is_dropped(desktop *d) {
+    char path[1024], folder[900];
+    assert_non_null(getcwd(folder, sizeof folder));
+    write_file("tree.swc", "1 1 0 0 0 4 -1\n2 1 0 0 30 3 1\n3 1 10 0 50 2 2\n4 1 -10 0 50 2 2\n");
+    snprintf(path, sizeof path, "%s/tree.swc", folder);
+    user_drops(d, path);
+    assert_string_equal(viewer_hears(d, "opened "), "vessel tree.swc");
+    viewer_hears(d, "frame");
+    write_file("broken.swc", "1 1 0 0\n");
+    snprintf(path, sizeof path, "%s/broken.swc", folder);
+    user_drops(d, path);
+    assert_non_null(strstr(viewer_hears(d, "error "), "broken.swc"));
+    viewer_rests(d, 0.6);
+    user_clicks(d, "Close");
+    user_types(d, "1"); /* the tree is still there */
+    assert_non_null(strstr(viewer_hears(d, "frame"), "ok"));
+}
+
+/* ---- picking and comparing ------------------------------------------------------------------- */
+
+/* Two lines cross, the upper one (the second) nearer to an eye above; a click on the crossing takes
+ * that one, beside it the other, into the void nothing. */
+static void picks_and_opens(void **state) {
+    static const char *const words[] = {
+        "cross.obj",
+        "--width",
+        "4",
+        "--ssaa",
+        "1",
+        "--camera",
+        "{\"eye\":[0,0,100],\"center\":[0,0,0],\"up\":[0,1,0],\"ortho_height\":60}",
+        NULL};
+    static const struct {
+        float x, y, z; /* mm */
+        int kind, line;
+    } clicks[] = {{0, 0, 5, 1, 1}, {12, 0, -5, 1, 0}, {0, -12, 5, 1, 1}, {12, 12, 0, 0, 0}};
+    fixture *f = *state;
+    desktop *d = f->desktop;
+    write_file("cross.obj", "v -20 0 -5\nv 0 0 -5\nv 20 0 -5\nv 0 -20 5\nv 0 0 5\nv 0 20 5\n"
+                            "l 1 2 3\nl 4 5 6\n");
+    start(f, words);
+    fill_window(d);
+    for (int i = 0; i < 4; i++) {
+        int kind, set, line, point;
+        float at[3], mm = (float)HEIGHT / 60;
+        user_points(d, (int)(WIDTH / 2 + mm * clicks[i].x), (int)(HEIGHT / 2 - mm * clicks[i].y));
+        user_presses(d, 1, true);
+        user_presses(d, 1, false);
+        const char *said = viewer_hears(d, "picked ");
+        assert_int_equal(sscanf(said, "%d %d %d %d %f %f %f", &kind, &set, &line, &point, &at[0],
+                                &at[1], &at[2]),
+                         7);
+        assert_int_equal(kind, clicks[i].kind);
+        assert_int_equal(line, clicks[i].line);
+        for (int k = 0; kind && k < 3; k++)
+            assert_float_equal(at[k], (&clicks[i].x)[k], 0.2);
+    }
+    opens_what_is_dropped(d);
+    quit(f);
+}
+
+static void compares_backends(desktop *d) {
+    user_clicks(d, "Compare");
+    user_clicks(d, "Two pictures side by side");
+    for (int i = 0; i < 2; i++) {
+        const char *said = viewer_hears(d, "compared out ");
+        assert_string_equal(said + strlen(said) - 2, " 0"); /* bits that differ */
+        user_points(d, 575, 60);                            /* the divider */
+        user_presses(d, 1, true);
+        user_points(d, 600, 60);
+        user_points(d, 640, 60);
+        user_presses(d, 1, false);
+        user_clicks(d, "Difference");
+        user_types(d, "2");
+    }
+    viewer_hears(d, "compared out ");
+    user_clicks(d, "Two pictures side by side");
+    viewer_hears(d, "frame");
+}
+
+/* All that one viewer can show of lines. */
+static void shows_lines(void **state) {
+    fixture *f = *state;
+    start(f, flow);
+    plays_and_stops(f->desktop);
+    turns_and_resizes(f->desktop);
+    writes_what_the_program_writes(f->desktop, "strength");
+    shows_what_the_program_writes(f->desktop);
+    compares_backends(f->desktop);
+    quit(f);
+}
+
+/* ---- all of it ----------------------------------------------------------------------------- */
+
+static int set_up(void **state) {
+    char folder[] = "view_XXXXXX", cache[1024];
+    fixture *f = *state;
+    f->desktop = desktop_start();
+    if (!f->desktop) {
+        print_error("Xvfb cannot be started; ./run setup installs it\n");
+        return -1;
+    }
+    if (!mkdtemp(folder) || chdir(folder) != 0 || !getcwd(cache, sizeof cache))
+        return -1;
+    setenv("MESA_SHADER_CACHE_DISABLE", "false", 1); /* of this run alone */
+    setenv("MESA_SHADER_CACHE_DIR", cache, 1);
+    return 0;
+}
+
+static int clean_up(void **state) {
+    fixture *f = *state;
+    viewer_kill(f->desktop);
+    return 0;
+}
+
+static int tear_down(void **state) {
+    fixture *f = *state;
+    desktop_stop(f->desktop);
+    return 0;
+}
+
+int main(int argc, char **argv) {
+    if (argc != 4 && argc != 5) {
+        fprintf(stderr, "usage: test_view VIEWER LINEAO gl|vk [NAME]\n");
+        return 2;
+    }
+    fixture f = {argv[3], NULL};
+    viewer = argv[1];
+    program = argv[2];
+    const struct CMUnitTest tests[] = {
+        {"shows_lines", shows_lines, NULL, clean_up, &f},
+        {"saves_surfaces", saves_surfaces, NULL, clean_up, &f},
+        {"saves_trees", saves_trees, NULL, clean_up, &f},
+        {"picks_and_opens", picks_and_opens, NULL, clean_up, &f},
+    };
+    void *state = &f;
+    if (argc > 4) /* those of this name */
+        cmocka_set_test_filter(argv[4]);
+    if (set_up(&state) != 0)
+        return 1;
+    int failed = cmocka_run_group_tests_name(f.backend, tests, NULL, NULL);
+    tear_down(&state);
+    return failed;
+}
