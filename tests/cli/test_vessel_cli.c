@@ -504,8 +504,7 @@ static void test_legend(void **state) {
 
 /* What needs texture coordinates turns them on: ink, and the images of a dump. */
 static void test_implied(void **state) {
-    static const char *const inks[] = {"stipple", "hatch",  "crosshatch",
-                                       "layered", "shadow", "void"};
+    static const char *const inks[] = {"hatch", "shadow", "void"};
     image_exr exr;
     pixels plain, ink;
     (void)state;
