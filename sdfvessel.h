@@ -5319,7 +5319,7 @@ static const lao_pass_row sdv__passes[] = {
       SDV__READ("#vessel_box"), SDV__READ("#vessel_cells"), SDV__READ("#vessel_ids"), SDV__READ("#vessel_cones"),
       SDV__READ("#vessel_shapes"), SDV__READ("#vessel_fields"), SDV__READ("vessel_uv"), SDV__READ("vessel_surface"),
       SDV__READ("vessel_bgnormal"), SDV__READ("vessel_along"), SDV__READ("vessel_across"), SDV__READ("vessel_recalled"), SDV__READ("#vessel_pattern"), SDV__READ("#vessel_colors"),
-      SDV__READ("vessel_grid"), SDV__READ("vessel_lists")}},
+      SDV__READ("vessel_normal"), SDV__READ("vessel_normal")}},
     {"vessel_shade", LAO_PASS_FULLSCREEN, "vessel_shade", 0, LAO_STAGE_SHADE, LAO_SCOPE_PER_SET, LAO_REPEAT_NONE, NULL, LAO_BLEND_NONE, LAO_DEPTH_NEARER, LAO_CULL_NONE, SDV__WITH_TREE,
      {SDV__KEEP("shaded"), SDV__KEEP("zbuffer")},
      {SDV__READ("vessel_position"), SDV__READ("vessel_normal"), SDV__READ("vessel_ray"), SDV__READ("#vessel_colors"),
@@ -5337,7 +5337,7 @@ static const lao_pass_row sdv__passes[] = {
      {SDV__READ("vessel_position"), SDV__READ("vessel_normal"), SDV__READ("vessel_normal"), SDV__READ("#vessel_colors"),
       SDV__READ("#vessel_box"), SDV__READ("#vessel_cells"), SDV__READ("#vessel_ids"), SDV__READ("#vessel_cones"),
       SDV__READ("#vessel_shapes"), SDV__READ("#vessel_fields"),
-      SDV__READ("vessel_surface"), SDV__READ("vessel_bgnormal"), SDV__READ("vessel_ink"), SDV__READ("vessel_color"), SDV__READ("vessel_grid"), SDV__READ("vessel_lists")}}
+      SDV__READ("vessel_surface"), SDV__READ("vessel_bgnormal"), SDV__READ("vessel_ink"), SDV__READ("vessel_color"), SDV__READ("vessel_normal"), SDV__READ("vessel_normal")}}
 };
 
 static const lao_setting_row sdv__settings[] = {
