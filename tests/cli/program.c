@@ -43,6 +43,9 @@ static void become(const char *program, char *line, const char *out, const char 
         sigprocmask(SIG_BLOCK, &set, NULL);
         raise(SIGINT);
     }
+    /* dozens of programs compile the same shaders: they share a cache of this test's own */
+    setenv("MESA_SHADER_CACHE_DISABLE", "false", 1);
+    setenv("MESA_SHADER_CACHE_DIR", "shaders.cache", 1);
     execv(program, words);
     _exit(127);
 }
