@@ -268,6 +268,7 @@ static void picks_and_opens(void **state) {
 
 static void compares_backends(desktop *d) {
     user_clicks(d, "Compare");
+    viewer_rests(d, 1); /* the panel has its final places */
     user_clicks(d, "Two pictures side by side");
     for (int i = 0; i < 2; i++) {
         const char *said = viewer_hears(d, "compared out ");
