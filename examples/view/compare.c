@@ -302,7 +302,7 @@ bool compare_take(compare *c) {
 
 bool compare_busy(compare *c) {
     pthread_mutex_lock(&c->lock);
-    bool busy = c->sides[0].done != c->serial || c->sides[1].done != c->serial;
+    bool busy = c->taken != c->serial; /* what is drawn but not taken is still to be shown */
     pthread_mutex_unlock(&c->lock);
     return busy;
 }
