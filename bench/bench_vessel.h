@@ -6,8 +6,8 @@
 #include <cJSON.h>
 #include <stdbool.h>
 
-/* Adds "fields", "device_fields" and "rays", arrays of measurements, to the document. quick: small trees, small
- * pictures. */
+/* Adds "fields", "device_fields" and "rays", arrays of measurements, to the document. quick: small
+ * trees, small pictures. */
 bool bench_vessel_run(cJSON *document, bool quick);
 
 /* Prints them as tables to standard output. */
