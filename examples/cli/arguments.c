@@ -366,6 +366,8 @@ static void setting_values(const lao_setting_row *row, char *text, size_t size) 
 /* Gives one setting to the source; supersampling belongs to the picture, thus to every source. */
 static bool set_setting(parser *p, setting_place place, const char *value) {
     const lao_module *module = place.at.module;
+    if (!place.row)
+        return cli_fail("'%s': this command has no setting for it", value);
     if (lao_setting_parse(module, place.index, value, (char *)p->source + place.at.offset) != 0) {
         char values[256];
         setting_values(place.row, values, sizeof values);
