@@ -2245,6 +2245,14 @@ static void sdv__give(const lao_allocator *allocator, void *taken) {
     }
 }
 
+/* Number k of a vector. */
+static float sdv__v3_at(lao_v3 v, uint32_t k) {
+    return k == 0 ? v.x : k == 1 ? v.y : v.z;
+}
+static float sdv__v4_at(lao_v4 v, uint32_t k) {
+    return k == 0 ? v.x : k == 1 ? v.y : k == 2 ? v.z : v.w;
+}
+
 /* Cuts one block into arrays: a first round with base NULL counts, a second one with the memory
    cuts. */
 typedef struct sdv__block {
@@ -2811,13 +2819,12 @@ static void sdv__tree_info(const sdv__build *b, sdv_tree *t) {
     info->joined = b->joined;
     for (i = 0; i < t->node_count; i++) {
         uint32_t children = t->child_counts[i];
-        const float *p = &t->nodes[i].x;
         info->leaves += children == 0 && t->parents[i] != SDV_NONE;
         info->branches += children >= 2;
         info->multifurcations += children >= 3;
         info->max_children = children > info->max_children ? children : info->max_children;
         for (k = 0; k < 3; k++) {
-            float v = p[k];
+            float v = sdv__v4_at(t->nodes[i], k);
             info->bounds[0][k] = i == 0 || v < info->bounds[0][k] ? v : info->bounds[0][k];
             info->bounds[1][k] = i == 0 || v > info->bounds[1][k] ? v : info->bounds[1][k];
         }
@@ -3565,8 +3572,11 @@ static size_t sdv__layer_size(const sdv_grid *g) {
     return (size_t)g->size[0] * g->size[1];
 }
 /* ---- which cells list something: a bit each, words along x */
+static uint32_t sdv__parts(uint32_t n, uint32_t size) {
+    return (n + size - 1) / size;
+}
 static uint32_t sdv__words(const sdv_grid *g) {
-    return (g->size[0] + 31) / 32;
+    return sdv__parts(g->size[0], 32);
 }
 /* row: y + size[1] z */
 static uint32_t *sdv__bits(const sdv_grid *g, size_t row) {
@@ -3588,9 +3598,9 @@ static uint32_t sdv__next_bit(const uint32_t *bits, uint32_t x, uint32_t end) {
 static void sdv__ball_bounds(const lao_v4 *balls, uint32_t count, double low[3], double high[3]) {
     uint32_t i, k;
     for (i = 0; i < count; i++) {
-        const float *p = &balls[i].x;
         for (k = 0; k < 3; k++) {
-            double a = (double)p[k] - (double)balls[i].w, b = (double)p[k] + (double)balls[i].w;
+            double p = (double)sdv__v4_at(balls[i], k);
+            double a = p - (double)balls[i].w, b = p + (double)balls[i].w;
             low[k] = i == 0 || a < low[k] ? a : low[k];
             high[k] = i == 0 || b > high[k] ? b : high[k];
         }
@@ -3599,7 +3609,7 @@ static void sdv__ball_bounds(const lao_v4 *balls, uint32_t count, double low[3],
 /* Cubic cells around all balls, and two more at every side. */
 static int sdv__grid_fit(const sdv_tree *tree, uint32_t resolution, sdv_grid *g) {
     double low[3], high[3], most = 0;
-    float *origin = &g->origin.x;
+    float origin[3];
     uint32_t k;
     if (resolution < 16 || resolution > SDV__AXIS) {
         return 0;
@@ -3614,6 +3624,7 @@ static int sdv__grid_fit(const sdv_tree *tree, uint32_t resolution, sdv_grid *g)
         g->size[k] = (uint32_t)ceil((high[k] - low[k]) / (double)g->cell) + 4;
         origin[k] = (float)(0.5 * (low[k] + high[k]) - 0.5 * (double)g->size[k] * (double)g->cell);
     }
+    g->origin = lao_v3_make(origin[0], origin[1], origin[2]);
     return 1;
 }
 static int sdv__grid_frame(const sdv_tree *tree, const sdv_grid_desc *desc, sdv_grid *g) {
@@ -3641,12 +3652,12 @@ static int sdv__grid_frame(const sdv_tree *tree, const sdv_grid_desc *desc, sdv_
 /* Are all balls inside the box? */
 static int sdv__grid_holds(const sdv_grid *g, const sdv_tree *tree) {
     double low[3], high[3];
-    const float *origin = &g->origin.x;
     uint32_t k;
     sdv__ball_bounds(tree->nodes, tree->node_count, low, high);
     for (k = 0; k < 3; k++) {
-        double end = (double)origin[k] + (double)g->size[k] * (double)g->cell;
-        if (!(low[k] >= (double)origin[k] && high[k] <= end)) {
+        double origin = (double)sdv__v3_at(g->origin, k);
+        double end = origin + (double)g->size[k] * (double)g->cell;
+        if (!(low[k] >= origin && high[k] <= end)) {
             return 0;
         }
     }
@@ -3695,13 +3706,12 @@ typedef struct sdv__raster {
 
 static sdv__raster sdv__raster_make(const sdv_grid *g, const lao_v4 *cone) {
     sdv__raster r;
-    const float *a = &cone[0].x, *b = &cone[1].x, *o = &g->origin.x;
     double reach = (double)sdv_list_reach(g->cell) + 0.02 * (double)g->cell;
-    int k;
+    uint32_t k;
     for (k = 0; k < 3; k++) {
-        reach += 1e-6 * (fabs((double)a[k]) + fabs((double)b[k]) + fabs((double)o[k]));
-        r.a[k] = (double)a[k];
-        r.b[k] = (double)b[k];
+        r.a[k] = (double)sdv__v4_at(cone[0], k);
+        r.b[k] = (double)sdv__v4_at(cone[1], k);
+        reach += 1e-6 * (fabs(r.a[k]) + fabs(r.b[k]) + fabs((double)sdv__v3_at(g->origin, k)));
     }
     r.ra = (double)cone[0].w * (1 + 1e-6) + reach;
     r.rb = (double)cone[1].w * (1 + 1e-6) + reach;
@@ -3731,7 +3741,8 @@ static int sdv__raster_cut(const sdv__raster *r, int axis, double at, double t[2
 /* Cells of an axis that the balls of t may reach: range[0] .. range[1] - 1. */
 static void sdv__raster_range(const sdv_grid *g, const sdv__raster *r, int axis, const double t[2],
                               uint32_t range[2]) {
-    double low = 0, high = 0, origin = (double)(&g->origin.x)[axis], n = (double)g->size[axis];
+    double low = 0, high = 0, origin = (double)sdv__v3_at(g->origin, (uint32_t)axis),
+           n = (double)g->size[axis];
     int i;
     for (i = 0; i < 2; i++) {
         double c = r->a[axis] + t[i] * (r->b[axis] - r->a[axis]);
@@ -3745,7 +3756,7 @@ static void sdv__raster_range(const sdv_grid *g, const sdv__raster *r, int axis,
     range[1] = high > 0 ? (high < n ? (uint32_t)high : g->size[axis]) : 0;
 }
 static double sdv__plane(const sdv_grid *g, int axis, uint32_t i) {
-    return (double)(&g->origin.x)[axis] + ((double)i + 0.5) * (double)g->cell;
+    return (double)sdv__v3_at(g->origin, (uint32_t)axis) + ((double)i + 0.5) * (double)g->cell;
 }
 /* Calls visit(arg, cell, centre) for every cell of layer z that the cone may be listed in. */
 typedef void (*sdv__visitor)(void *arg, uint32_t cell, lao_v3 centre);
@@ -3966,7 +3977,7 @@ static void sdv__column(sdv_grid *g, uint32_t x, uint32_t y, const uint32_t *bes
     sdv__envelope e;
     uint32_t z, nz = g->size[2];
     for (z = 0; z < nz; z++) {
-        uint32_t cell = best[z * SDV__WIDE];
+        uint32_t cell = best[(size_t)z * SDV__WIDE];
         int32_t dx = (int32_t)(cell & 65535u) - (int32_t)x;
         int32_t dy = (int32_t)(cell >> 16) - (int32_t)y;
         apart[z] = cell == SDV_NONE ? -1 : dx * dx + dy * dy;
@@ -3981,7 +3992,7 @@ static void sdv__column(sdv_grid *g, uint32_t x, uint32_t y, const uint32_t *bes
         }
         winner = e.place[k];
         dz = winner - (int32_t)z;
-        cell = best[winner * SDV__WIDE];
+        cell = best[(size_t)winner * SDV__WIDE];
         sdv__nearest_write(g, sdv__row(g, y, z) + x,
                            sdv__row(g, cell >> 16, (uint32_t)winner) + (cell & 65535u),
                            apart[winner] + dz * dz, stale);
@@ -3992,7 +4003,8 @@ static void sdv__columns(sdv_grid *g, uint32_t x0, uint32_t y, const unsigned ch
     uint32_t best[SDV__AXIS * SDV__WIDE], i, z;
     uint32_t wide = g->size[0] - x0 < SDV__WIDE ? g->size[0] - x0 : (uint32_t)SDV__WIDE;
     for (z = 0; z < g->size[2]; z++) {
-        memcpy(best + z * SDV__WIDE, g->layer + sdv__row(g, y, z) + x0, wide * sizeof *best);
+        memcpy(best + (size_t)z * SDV__WIDE, g->layer + sdv__row(g, y, z) + x0,
+               wide * sizeof *best);
     }
     for (i = 0; i < wide; i++) {
         if (!wanted || wanted[i]) {
@@ -4610,7 +4622,7 @@ static lao_result sdv__change_prepare(sdv__work *work, sdv__change *c, uint64_t 
     const lao_allocator *a = &g->allocator;
     uint32_t k, lists;
     for (k = 0; k < 3; k++) {
-        c->blocks[k] = (g->size[k] + SDV__BLOCK - 1) / SDV__BLOCK;
+        c->blocks[k] = sdv__parts(g->size[k], SDV__BLOCK);
     }
     c->stale = (unsigned char *)sdv__take(a, g->cell_count, 1);
     c->close =
@@ -4676,7 +4688,7 @@ static lao_result sdv__grid_change(const sdv_host *host, const sdv_tree *tree,
     work.host = host;
     work.done = 0;
     work.total =
-        5 * (uint64_t)grid->size[2] + grid->size[1] + (grid->size[2] + SDV__BLOCK - 1) / SDV__BLOCK;
+        5 * (uint64_t)grid->size[2] + grid->size[1] + sdv__parts(grid->size[2], SDV__BLOCK);
     if (sdv__changed_cones(tree, nodes, count, &c)) {
         result = sdv__change_prepare(&work, &c, &sum);
     } else {
@@ -5168,10 +5180,10 @@ static uint32_t sdv__spread(uint32_t v) { /* 10 bits, two free ones between */
     return (v | v << 2) & 0x09249249u;
 }
 static uint32_t sdv__morton(const sdv__piece *s, const double low[3], double size) {
-    const float *u = &s->u.x, *v = &s->v.x, *w = &s->w.x;
     uint32_t key = 0, k;
     for (k = 0; k < 3; k++) {
-        double c = ((double)u[k] + (double)v[k] + (double)w[k]) / 3 - low[k];
+        double u = (double)sdv__v3_at(s->u, k), v = (double)sdv__v3_at(s->v, k);
+        double c = (u + v + (double)sdv__v3_at(s->w, k)) / 3 - low[k];
         double cell = size > 0 ? c / size * 1023 : 0;
         key |= sdv__spread(cell > 0 ? (cell < 1023 ? (uint32_t)cell : 1023u) : 0u) << k;
     }
@@ -5422,10 +5434,9 @@ static lao_v4 sdv__channels(const sdv__level *l, size_t texel, uint32_t channels
 }
 static void sdv__channels_set(const sdv__level *l, size_t texel, uint32_t channels, uint32_t c,
                               lao_v4 value) {
-    const float *v = &value.x;
     uint32_t k;
     for (k = 0; k < 4 && c + k < channels; k++) {
-        l->values[texel * channels + c + k] = v[k];
+        l->values[texel * channels + c + k] = sdv__v4_at(value, k);
     }
 }
 static void sdv__pull_texel(const sdv__pull *p, uint32_t x, uint32_t y) {
@@ -5843,11 +5854,11 @@ SDV_API void sdv_camera_margin(const lao_camera *camera, uint32_t width, uint32_
                                uint32_t margin, lao_camera *wider) {
     double x = (double)width / ((double)width + 2.0 * margin);
     double y = (double)height / ((double)height + 2.0 * margin);
-    int column;
+    size_t column;
     *wider = *camera;
-    for (column = 0; column < 4; column++) {
-        wider->projection[4 * column] = (float)(x * (double)camera->projection[4 * column]);
-        wider->projection[4 * column + 1] = (float)(y * (double)camera->projection[4 * column + 1]);
+    for (column = 0; column < 16; column += 4) {
+        wider->projection[column] = (float)(x * (double)camera->projection[column]);
+        wider->projection[column + 1] = (float)(y * (double)camera->projection[column + 1]);
     }
 }
 
@@ -5950,7 +5961,7 @@ static double sdv__blocks(const sdv_grid *g, uint32_t edge) {
     double n = 1;
     uint32_t k;
     for (k = 0; k < 3; k++) {
-        n *= (double)((g->size[k] + edge - 1) / edge);
+        n *= (double)sdv__parts(g->size[k], edge);
     }
     return n;
 }
@@ -5974,18 +5985,19 @@ static double sdv__most_cells(const sdv_grid *g, const lao_v4 *cone) {
 /* Most blocks of so many cells that list it: those whose middles are in its box with their reach
    around it. The last along an axis may be smaller, and its middle lower. */
 static double sdv__most_blocks(const sdv_grid *g, const lao_v4 *cone, uint32_t edge) {
-    const float *a = &cone[0].x, *b = &cone[1].x, *origin = &g->origin.x;
     lao_v3 last = lao_v3_make(1, 1, 1);
     double blocks = 1, size = (double)edge * (double)g->cell, reach;
     uint32_t k;
     last = lao_v3_scale(last, (float)(edge - 1));
     reach = 1.01 * (double)sdv_block_reach(sdv__grid_box(g), lao_v3_make(0, 0, 0), last).w;
     for (k = 0; k < 3; k++) {
-        double n = (double)((g->size[k] + edge - 1) / edge);
-        double low = (double)lao_min(a[k] - cone[0].w, b[k] - cone[1].w) - reach;
-        double high = (double)lao_max(a[k] + cone[0].w, b[k] + cone[1].w) + reach;
-        low = ceil((low - (double)origin[k]) / size - 0.5);
-        high = floor((high - (double)origin[k]) / size - 0.5);
+        double n = (double)sdv__parts(g->size[k], edge);
+        float a = sdv__v4_at(cone[0], k), b = sdv__v4_at(cone[1], k);
+        double origin = (double)sdv__v3_at(g->origin, k);
+        double low = (double)lao_min(a - cone[0].w, b - cone[1].w) - reach;
+        double high = (double)lao_max(a + cone[0].w, b + cone[1].w) + reach;
+        low = ceil((low - origin) / size - 0.5);
+        high = floor((high - origin) / size - 0.5);
         low = low > 0 ? low : 0;
         high = high >= n - 2 ? n - 1 : high;
         blocks *= high >= low ? high - low + 1 : 0;
@@ -6166,11 +6178,10 @@ SDV_API lao_result sdv_object_move(const sdv_host *host, const sdv_tree *tree,
 }
 
 static bool sdv__shape_fits(const sdv_shape *s, uint32_t field_count) {
-    const float *v = &s->a.x, *w = &s->b.x;
     double size = (double)s->b.x * (double)s->b.y * (double)s->b.z;
-    int i;
+    uint32_t i;
     for (i = 0; i < 4; i++) {
-        if (!(fabsf(v[i]) <= 1e9f && fabsf(w[i]) <= 1e9f)) {
+        if (!(fabsf(sdv__v4_at(s->a, i)) <= 1e9f && fabsf(sdv__v4_at(s->b, i)) <= 1e9f)) {
             return false;
         }
     }
@@ -6204,7 +6215,7 @@ SDV_API lao_result sdv_object_shapes(const sdv_host *host, const sdv_shapes *sha
         lao_v4_make((float)shapes->count, sdv__united(shapes) ? 1.0f : 0.0f, 0.0f, 0.0f);
     for (i = 0; i < shapes->count; i++) {
         const sdv_shape *s = &shapes->shapes[i];
-        lao_v4 *to = object->shapes + 1 + 4 * i;
+        lao_v4 *to = object->shapes + 1 + 4 * (size_t)i;
         to[0] = s->a;
         to[1] = s->b;
         to[2] = lao_v4_make((float)s->kind, (float)s->operation, 0.0f, 0.0f);
