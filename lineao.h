@@ -300,7 +300,7 @@ typedef enum lao_depth_test {
 } lao_depth_test;
 
 #define LAO_MAX_BUFFERS 24 /* of all modules of a context */
-#define LAO_MAX_READS 28
+#define LAO_MAX_READS 16 /* texture units that every stage has at least (OpenGL 3.3, Vulkan) */
 #define LAO_MAX_WRITES 6
 #define LAO_MAX_CONSTANTS 12
 #define LAO_MAX_CONDITIONS 3
@@ -2151,8 +2151,9 @@ extern "C" {
 #define LAO__READ(image) {image, LAO_LEVEL_SAME, 0, LAO_PHASE_THIS, LAO_LOAD_DISCARD}
 #define LAO__READ_FINER(image) {image, LAO_LEVEL_FINER, 0, LAO_PHASE_THIS, LAO_LOAD_DISCARD}
 #define LAO__READ_LEVEL(image, level) {image, LAO_LEVEL_INDEX, level, LAO_PHASE_THIS, LAO_LOAD_DISCARD}
-#define LAO__READ_ALL(image) LAO__READ_LEVEL(image, 0), LAO__READ_LEVEL(image, 1), LAO__READ_LEVEL(image, 2), LAO__READ_LEVEL(image, 3), \
-                             LAO__READ_LEVEL(image, 4), LAO__READ_LEVEL(image, 5), LAO__READ_LEVEL(image, 6), LAO__READ_LEVEL(image, 7)
+#define LAO__READ_COARSE(image) LAO__READ_LEVEL(image, 1), LAO__READ_LEVEL(image, 2), LAO__READ_LEVEL(image, 3), LAO__READ_LEVEL(image, 4), \
+                                LAO__READ_LEVEL(image, 5), LAO__READ_LEVEL(image, 6), LAO__READ_LEVEL(image, 7)
+#define LAO__READ_ALL(image) LAO__READ_LEVEL(image, 0), LAO__READ_COARSE(image)
 #define LAO__CLEAR(image) {image, LAO_LEVEL_SAME, 0, LAO_PHASE_THIS, LAO_LOAD_CLEAR}
 #define LAO__KEEP(image) {image, LAO_LEVEL_SAME, 0, LAO_PHASE_THIS, LAO_LOAD_KEEP}
 #define LAO__WRITE(image) {image, LAO_LEVEL_SAME, 0, LAO_PHASE_THIS, LAO_LOAD_DISCARD}
@@ -2209,7 +2210,7 @@ static const lao_pass_row lao__passes[] = {
      {LAO__READ_FINER("tensor"), LAO__READ_FINER("level_tangent")}},
     {"occlusion", LAO_PASS_FULLSCREEN, "occlusion", 0, LAO_STAGE_SHADE, LAO_SCOPE_PER_SET, LAO_REPEAT_NONE, NULL, LAO_BLEND_NONE, LAO_DEPTH_COVERED, LAO_CULL_NONE, {{"occlusion", '=', 1}},
      {LAO__CLEAR("ao"), LAO__KEEP("zbuffer")},
-     {LAO__READ("tangent"), LAO__READ_ALL("level"), LAO__READ_ALL("level_tangent")}},
+     {LAO__READ("tangent"), LAO__READ_ALL("level"), LAO__READ_COARSE("level_tangent")}},
     /* for debugging only: shadows leak into what is not shadowed (Koehler 2017, 4.4) */
     {"smooth_x", LAO_PASS_FULLSCREEN, "smooth", 0, LAO_STAGE_SHADE, LAO_SCOPE_PER_SET, LAO_REPEAT_COUNT, "smoothing", LAO_BLEND_NONE, LAO_DEPTH_NONE, LAO_CULL_NONE, {{"occlusion", '=', 1}},
      {LAO__OTHER("ao")}, {LAO__READ("ao"), LAO__READ("color")}},
@@ -2911,8 +2912,20 @@ static int lao__row_is_used(const lao_graph *graph, uint32_t index) {
     return 0;
 }
 
+static const lao_shader *lao__shader_find(const lao_shader *shaders, uint32_t count,
+                                          const char *name) {
+    uint32_t i;
+    for (i = 0; i < count; i++) {
+        if (strcmp(shaders[i].name, name) == 0) {
+            return &shaders[i];
+        }
+    }
+    return NULL;
+}
+
 int lao_graph_check(const lao_graph *graph, const lao_shader *shaders, uint32_t shader_count,
                     char *text, size_t text_size) {
+    const lao_shader *shader;
     uint32_t i, k, m, used;
     if (lao__check_names(graph, text, text_size) != 0) {
         return -1;
@@ -2958,15 +2971,19 @@ int lao_graph_check(const lao_graph *graph, const lao_shader *shaders, uint32_t 
             return lao__fault(text, text_size, "nothing uses what pass '%s' writes%s", row->name,
                               "");
         }
-        for (k = 0; shaders && k < shader_count && strcmp(shaders[k].name, row->shader) != 0; k++) {
+        shader = lao__shader_find(graph->modules[m]->shaders, graph->modules[m]->shader_count,
+                                  row->shader);
+        if (!shader) {
+            shader = lao__shader_find(shaders, shaders ? shader_count : 0, row->shader);
         }
-        used = shaders && k < shader_count;
-        for (k = 0; k < graph->modules[m]->shader_count; k++) {
-            used |= strcmp(graph->modules[m]->shaders[k].name, row->shader) == 0;
-        }
-        if (shaders && !used) {
+        if (shaders && !shader) {
             return lao__fault(text, text_size, "pass '%s' has no shader '%s'", row->name,
                               row->shader);
+        }
+        if (shader && shader->texture_count > LAO_MAX_READS) {
+            return lao__fault(text, text_size,
+                              "shader '%s' of pass '%s' has more textures than a pass can read",
+                              row->shader, row->name);
         }
     }
     for (i = 0; i < graph->image_count; i++) {
