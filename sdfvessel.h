@@ -536,6 +536,8 @@ SDV_API lao_result sdv_pull_push(const sdv_host *host, const sdv_pull_push_desc 
       "background)")                                                                               \
     X(void_exponent, INT, 1, 1000, 25, 1, "", "",                                                  \
       "how little the void's depth takes over from afar (k of L19)")                               \
+    X(void_reach, FLOAT, 0, 1000, 6, 0, "%", "",                                                   \
+      "how far from a vessel the void's ink ends, of the scene's diameter; 0: nowhere")            \
     X(isolines, INT, 0, 1000, 30, 0, "", "", "lines of depth of the chromadepth; 0: none")         \
     X(ink_step, FLOAT, 0.001f, 1, 0.1f, 0, "", "",                                                 \
       "how much of what a new solution changes of a place's ink shows in a frame; 1: all at once") \
@@ -639,11 +641,14 @@ SDV_API lao_result sdv_object_move(const sdv_host *host, const sdv_tree *tree,
    Fails with NULL_ARGUMENT, MESH, MEMORY. */
 SDV_API lao_result sdv_object_mesh(const sdv_host *host, const sdv_mesh_desc *desc,
                                    sdv_object *object);
-/* Describes a surface that the host has drawn itself. Each frame names three images of its own
-   (lao_frame.imports; as large as the view, `supersampling` 1): "vessel_position" (RGBA32F; world,
-   mm; w 0 where there is a surface, -1 elsewhere), "vessel_normal" (RGBA32F; world, unit, towards
-   the viewer) and "vessel_color" (RGBA8); with guide=own "vessel_direction" (RGBA32F; world; w: how
-   sure, 0 .. 1) too. bounds: lower and upper corner (6 floats), mm. Fails with NULL_ARGUMENT. */
+/* Describes a surface that the host has drawn itself. Each frame names images of its own
+   (lao_frame.imports; as large as the view times `supersampling`, row 0 at the bottom):
+   "vessel_position" (RGBA32F; world, mm; w 0 where there is a surface, -1 elsewhere), or in its
+   place "vessel_drawn_depth" (x: a depth buffer's value, 0 .. 1 by lao_frame.camera; nothing where
+   it is 0 or 1). (Optional) "vessel_normal" (RGBA32F; world, unit, towards the viewer; w: beside
+   the surface mm from the ray to it, for void_reach) and "vessel_color" (RGBA8): else normals come
+   from neighbouring places, and it is white. With guide=own "vessel_direction" (RGBA32F; world; w:
+   how sure, 0 .. 1). bounds: lower and upper corner (6 floats), mm. Fails with NULL_ARGUMENT. */
 SDV_API lao_result sdv_object_drawn(const sdv_host *host, const float *bounds, sdv_object *object);
 /* Gives it a texture of ink for the style `pattern`: a picture of size x size grey values (1 ..
    SDV_MOST_PATTERN; smaller: inked first), which lies in half a period of (u, v) and is mirrored
@@ -1589,11 +1594,11 @@ LAO_FN float sdv_outline_width(float width, float unit, float zoom) {
     LAO_EXACT float mm = width / zoom;
     return unit > 0.5f ? width : mm;
 }
-/* How near to a vessel a ray must pass for anything to be drawn of it, mm. `shadow`, `halo`: % of
-   the diameter. */
+/* How near to a vessel a ray must pass for anything to be drawn of it, mm. `shadow`, `halo`, `ink`:
+   % of the diameter. */
 LAO_FN float sdv_near_miss_reach(float silhouette, float contour, float shadow, float halo,
-                                 float diameter) {
-    LAO_EXACT float widest = 0.01f * lao_max(shadow, halo) * diameter;
+                                 float ink, float diameter) {
+    LAO_EXACT float widest = 0.01f * lao_max(lao_max(shadow, halo), ink) * diameter;
     return lao_max(lao_max(silhouette, contour), widest);
 }
 /* Place of p along a cone's axis, 0 at a, 1 at b. */
@@ -1691,6 +1696,14 @@ LAO_FN float sdv_empty_depth(lao_v4 depth) {
 LAO_FN float sdv_depth_of(lao_m4 view, lao_v3 p) {
     lao_v3 q = lao_transform(view, p);
     return -q.z;
+}
+/* Depth before the camera, mm, of a depth buffer's value: the inverse of the projection to 0 .. 1;
+   SDV_FAR where the buffer holds either end, so nothing. */
+LAO_FN float sdv_drawn_depth(lao_m4 projection, float value) {
+    LAO_EXACT float over = projection.w.z - value * projection.w.w;
+    LAO_EXACT float under = projection.z.z - value * projection.z.w;
+    LAO_EXACT float z = over / under;
+    return value > 0.0f && value < 1.0f && lao_abs(z) < SDV_FAR ? z : SDV_FAR;
 }
 /* The place of the world at that depth of a pixel. */
 LAO_FN lao_v3 sdv_depth_place(lao_m4 world, lao_v2 slope, float depth, float orthographic) {
@@ -2144,6 +2157,13 @@ LAO_FN float sdv_ink_rest(float before, float now, float step) {
 LAO_FN float sdv_style_tone(float facing, float ambient, float diffuse, float light) {
     LAO_EXACT float r = (ambient + diffuse * lao_max(facing, 0.0f)) * light;
     return lao_clamp01(r);
+}
+/* What the void keeps of its ink where the ray passes a vessel at d_min mm: all beside it, nothing
+   from `reach` mm on, and all everywhere without a reach. */
+LAO_FN float sdv_void_share(float d_min, float reach) {
+    LAO_EXACT float near_ = lao_clamp01(1.0f - lao_max(d_min, 0.0f) / lao_max(reach, 1.0e-6f));
+    LAO_EXACT float r = near_ * near_ * (3.0f - 2.0f * near_);
+    return reach > 0.0f ? r : 1.0f;
 }
 /* Red near, blue far (METHODS 6.1, RSH06). */
 LAO_FN lao_v3 sdv_chromadepth(float depth) {
@@ -5612,6 +5632,7 @@ SDV_API lao_result sdv_pull_push(const sdv_host *host, const sdv_pull_push_desc 
 #define SDV__TREE {"#vessel_cones", '>', 0}, {"#vessel_shapes", '=', 0}
 #define SDV__SHAPES {"#vessel_cones", '>', 0}, {"#vessel_shapes", '>', 0}
 #define SDV__SEEN {"#vessel_box", '>', 0}, {"#vessel_cones", '=', 0}
+#define SDV__DRAWN {SDV__SEEN, {"#vessel_triangles", '=', 0}}
 #define SDV__WITH_TREE {SDV__TREE}
 #define SDV__WITH_SHAPES {SDV__SHAPES}
 /* sdv_object_make_tree: the object has no cells of its own */
@@ -5654,6 +5675,7 @@ static const lao_image_row sdv__images[] = {
     {"vessel_ray",      LAO_FORMAT_RGBA32F, LAO_SIZE_FULL, 0, 0, NULL, 0, LAO_ENCODING_PLAIN, {0, 0, 0, 0},  {NULL, 0, 0}, {NULL, NULL, NULL, NULL}},
     {"vessel_color",    LAO_FORMAT_RGBA8,   LAO_SIZE_FULL, 0, 0, NULL, 0, LAO_ENCODING_PLAIN, {0, 0, 0, 0},  {NULL, 0, 0}, {NULL, NULL, NULL, NULL}},
     {"vessel_direction", LAO_FORMAT_RGBA32F, LAO_SIZE_FULL, 0, 0, NULL, 0, LAO_ENCODING_PLAIN, {0, 0, 0, 0}, {"guide", '>', 0}, {NULL, NULL, NULL, NULL}},
+    {"vessel_drawn_depth", LAO_FORMAT_HOST, LAO_SIZE_FULL, 0, 0, NULL, LAO_IMAGE_IMPORT, LAO_ENCODING_PLAIN, {0, 0, 0, 0}, {NULL, 0, 0}, {NULL, NULL, NULL, NULL}},
     {"vessel_z",        LAO_FORMAT_D32F,    LAO_SIZE_FULL, 0, 0, NULL, 0, LAO_ENCODING_PLAIN, {1, 0, 0, 0},  {NULL, 0, 0}, {NULL, NULL, NULL, NULL}},
     /* where there is a parameterization: of pyramids, levels down to one texel; what each holds stands in its shader */
     {"vessel_depth", LAO_FORMAT_RGBA32F, LAO_SIZE_FULL, 0, 0, "*", 0, LAO_ENCODING_PLAIN, {0, 0, 0, 0}, SDV__BACKGROUND, {NULL, NULL, NULL, NULL}},
@@ -5740,6 +5762,16 @@ static const lao_pass_row sdv__passes[] = {
     {"vessel_mesh", LAO_PASS_DRAW_MESH, "vessel_mesh", 0, LAO_STAGE_DRAW, LAO_SCOPE_PER_SET, LAO_REPEAT_NONE, NULL, LAO_BLEND_NONE, LAO_DEPTH_NEARER, LAO_CULL_NONE, {{"#vessel_triangles", '>', 0}},
      {SDV__CLEAR("vessel_position"), SDV__CLEAR("vessel_normal"), SDV__CLEAR("vessel_color"), SDV__CLEAR("vessel_direction"), SDV__CLEAR("vessel_z")},
      {SDV__READ("#vessel_vertices"), SDV__READ("#vessel_triangles"), SDV__READ("#vessel_colors")}},
+    /* of a surface that the host drew what it does not bring itself */
+    {"vessel_drawn_place", LAO_PASS_FULLSCREEN, "vessel_drawn", 0, LAO_STAGE_DRAW, LAO_SCOPE_PER_SET, LAO_REPEAT_NONE, NULL, LAO_BLEND_NONE, LAO_DEPTH_NONE, LAO_CULL_NONE, SDV__DRAWN,
+     {SDV__WRITE("vessel_position")},
+     {SDV__READ("vessel_drawn_depth")}},
+    {"vessel_drawn_normal", LAO_PASS_FULLSCREEN, "vessel_drawn", 1, LAO_STAGE_DRAW, LAO_SCOPE_PER_SET, LAO_REPEAT_NONE, NULL, LAO_BLEND_NONE, LAO_DEPTH_NONE, LAO_CULL_NONE, SDV__DRAWN,
+     {SDV__WRITE("vessel_normal")},
+     {SDV__READ("vessel_position")}},
+    {"vessel_drawn_color", LAO_PASS_FULLSCREEN, "vessel_drawn", 2, LAO_STAGE_DRAW, LAO_SCOPE_PER_SET, LAO_REPEAT_NONE, NULL, LAO_BLEND_NONE, LAO_DEPTH_NONE, LAO_CULL_NONE, SDV__DRAWN,
+     {SDV__WRITE("vessel_color")},
+     {SDV__READ("vessel_position")}},
     /* the void: depth pulled up and pushed down, then a place and a normal for every pixel (L19 3.4) */
     {"vessel_depth", LAO_PASS_FULLSCREEN, "vessel_depth", 0, LAO_STAGE_SHADE, LAO_SCOPE_PER_SET, LAO_REPEAT_NONE, NULL, LAO_BLEND_NONE, LAO_DEPTH_NONE, LAO_CULL_NONE, SDV__WITH_BACKGROUND,
      {SDV__WRITE("vessel_depth")},
@@ -5794,25 +5826,22 @@ static const lao_pass_row sdv__passes[] = {
     /* strokes and dots, where phases changed faded over */
     {"vessel_ink", LAO_PASS_FULLSCREEN, "vessel_ink", 0, LAO_STAGE_SHADE, LAO_SCOPE_PER_SET, LAO_REPEAT_NONE, NULL, LAO_BLEND_NONE, LAO_DEPTH_NONE, LAO_CULL_NONE, {SDV__TREE, SDV__PARAMETERIZED},
      {SDV__WRITE("vessel_ink")},
-     {SDV__READ("vessel_position"), SDV__READ("vessel_normal"), SDV__READ("vessel_ray"),
+     {SDV__READ("vessel_surface"), SDV__READ("vessel_bgnormal"), SDV__READ("vessel_normal"), SDV__READ("vessel_ray"),
       SDV__READ("#vessel_box"), SDV__READ("#vessel_cells"), SDV__READ("#vessel_ids"), SDV__READ("#vessel_cones"),
-      SDV__READ("#vessel_shapes"), SDV__READ("#vessel_fields"), SDV__READ("vessel_uv"), SDV__READ("vessel_surface"),
-      SDV__READ("vessel_bgnormal"), SDV__READ("vessel_along"), SDV__READ("vessel_across"), SDV__READ("vessel_recalled"), SDV__READ("#vessel_pattern"), SDV__READ("#vessel_colors"),
-      SDV__READ("vessel_grid"), SDV__READ("vessel_lists")}},
+      SDV__READ("#vessel_shapes"), SDV__READ("#vessel_fields"), SDV__READ("vessel_uv"), SDV__READ("vessel_recalled"),
+      SDV__READ("#vessel_pattern"), SDV__READ("#vessel_colors"), SDV__READ("vessel_grid"), SDV__READ("vessel_lists")}},
     {"vessel_ink_cut", LAO_PASS_FULLSCREEN, "vessel_ink", 1, LAO_STAGE_SHADE, LAO_SCOPE_PER_SET, LAO_REPEAT_NONE, NULL, LAO_BLEND_NONE, LAO_DEPTH_NONE, LAO_CULL_NONE, {SDV__SHAPES, SDV__PARAMETERIZED},
      {SDV__WRITE("vessel_ink")},
-     {SDV__READ("vessel_position"), SDV__READ("vessel_normal"), SDV__READ("vessel_ray"),
+     {SDV__READ("vessel_surface"), SDV__READ("vessel_bgnormal"), SDV__READ("vessel_normal"), SDV__READ("vessel_ray"),
       SDV__READ("#vessel_box"), SDV__READ("#vessel_cells"), SDV__READ("#vessel_ids"), SDV__READ("#vessel_cones"),
-      SDV__READ("#vessel_shapes"), SDV__READ("#vessel_fields"), SDV__READ("vessel_uv"), SDV__READ("vessel_surface"),
-      SDV__READ("vessel_bgnormal"), SDV__READ("vessel_along"), SDV__READ("vessel_across"), SDV__READ("vessel_recalled"), SDV__READ("#vessel_pattern"), SDV__READ("#vessel_colors"),
-      SDV__READ("vessel_grid"), SDV__READ("vessel_lists")}},
+      SDV__READ("#vessel_shapes"), SDV__READ("#vessel_fields"), SDV__READ("vessel_uv"), SDV__READ("vessel_recalled"),
+      SDV__READ("#vessel_pattern"), SDV__READ("#vessel_colors"), SDV__READ("vessel_grid"), SDV__READ("vessel_lists")}},
     {"vessel_ink_seen", LAO_PASS_FULLSCREEN, "vessel_ink", 2, LAO_STAGE_SHADE, LAO_SCOPE_PER_SET, LAO_REPEAT_NONE, NULL, LAO_BLEND_NONE, LAO_DEPTH_NONE, LAO_CULL_NONE, {SDV__SEEN, SDV__PARAMETERIZED},
      {SDV__WRITE("vessel_ink")},
-     {SDV__READ("vessel_position"), SDV__READ("vessel_normal"), SDV__READ("vessel_normal"),
+     {SDV__READ("vessel_surface"), SDV__READ("vessel_bgnormal"), SDV__READ("vessel_normal"), SDV__READ("vessel_normal"),
       SDV__READ("#vessel_box"), SDV__READ("#vessel_cells"), SDV__READ("#vessel_ids"), SDV__READ("#vessel_cones"),
-      SDV__READ("#vessel_shapes"), SDV__READ("#vessel_fields"), SDV__READ("vessel_uv"), SDV__READ("vessel_surface"),
-      SDV__READ("vessel_bgnormal"), SDV__READ("vessel_along"), SDV__READ("vessel_across"), SDV__READ("vessel_recalled"), SDV__READ("#vessel_pattern"), SDV__READ("#vessel_colors"),
-      SDV__READ("vessel_normal"), SDV__READ("vessel_normal")}},
+      SDV__READ("#vessel_shapes"), SDV__READ("#vessel_fields"), SDV__READ("vessel_uv"), SDV__READ("vessel_recalled"),
+      SDV__READ("#vessel_pattern"), SDV__READ("#vessel_colors"), SDV__READ("vessel_normal"), SDV__READ("vessel_normal")}},
     {"vessel_shade", LAO_PASS_FULLSCREEN, "vessel_shade", 0, LAO_STAGE_SHADE, LAO_SCOPE_PER_SET, LAO_REPEAT_NONE, NULL, LAO_BLEND_NONE, LAO_DEPTH_NEARER, LAO_CULL_NONE, SDV__WITH_TREE,
      {SDV__KEEP("shaded"), SDV__KEEP("zbuffer")},
      {SDV__READ("vessel_position"), SDV__READ("vessel_normal"), SDV__READ("vessel_ray"), SDV__READ("#vessel_colors"),

@@ -89,6 +89,7 @@ static const flag_row flags[] = {
     {"--flip", NULL, "on|off", FLAG_CHOICE, CLI_SURFACE, ALL(surface.flip), "on|off", "turn the MESH inside out, or leave an open one that seems to be so (closed ones never are)"},
     {"--smooth", NULL, "N", FLAG_COUNT, CLI_SURFACE, ALL(surface.smooth), NULL, "smooth the MESH by N double steps that keep its volume (Taubin)"},
     {"--subdivide", NULL, "N", FLAG_COUNT, CLI_SURFACE, ALL(surface.subdivide), NULL, "each time four triangles for one (Loop), 1..4"},
+    {"--triangles", NULL, "N", FLAG_COUNT, CLI_SURFACE, ALL(surface.triangles), NULL, "merge vertices until N triangles are left at most, 100..16777216 (of meshes that have more: 16777216)"},
     {"--scene", NULL, "NAME", FLAG_CHOICE, CLI_SURFACE, ALL(scene), "aorta|aneurysm|liver|bone", "embedded surface, when no MESH is given: aorta (an arch with a bulge, and its flow), aneurysm, liver (with a vein inside) or bone"},
     {"--frames", NULL, "N", FLAG_COUNT, CLI_SURFACE, ALL(frames), NULL, "a sequence of pictures or a video over one period of the lines, or from their first time to the last"},
     {"--time", NULL, "MS", FLAG_NUMBER, CLI_SURFACE, ALL(time), NULL, "what is lit: the lines around this time, and the surface near them (0; of the embedded flow 180, of a VOLUME half of the median line's)"},
@@ -640,6 +641,9 @@ static bool check_surface(const cli_options *o) {
         return cli_fail("surface: no output is asked for; write -o out.png");
     if (s->subdivide > 4)
         return cli_fail("--subdivide: '%u' is not a value of it; write 1..4", s->subdivide);
+    if (s->triangles && (s->triangles < 100 || s->triangles > CLI_MOST_TRIANGLES))
+        return cli_fail("--triangles: '%u' is not a value of it; write 100..%u", s->triangles,
+                        (unsigned)CLI_MOST_TRIANGLES);
     if (s->value && o->file_count == 0)
         return cli_fail("--value: names an array of a MESH, and none is given");
     if (!flow && (o->frames || !isnan(o->time)))

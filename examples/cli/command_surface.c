@@ -184,6 +184,24 @@ static bool render(cli_wall *wall) {
 
 /* ---- report ----------------------------------------------------------------------------- */
 
+/* What this program did to the mesh. */
+static bool own_warning(const cli_wall *wall, uint32_t i, char *text, size_t size) {
+    if (wall->turned && i-- == 0)
+        snprintf(text, size,
+                 "it is open and seemed inside out, and was turned round; --flip off leaves it");
+    else if (wall->widened && i-- == 0)
+        snprintf(text, size,
+                 "%u nodes have a radius below %.3g mm and were given that; --grid makes it less",
+                 (unsigned)wall->widened, wall->thinnest);
+    else if (wall->decimated && i == 0)
+        snprintf(text, size,
+                 "vertices were merged: %u of %u triangles are left; --triangles says how many",
+                 (unsigned)wall->decimated_to, (unsigned)wall->decimated);
+    else
+        return false;
+    return true;
+}
+
 /* The warning i of all about the mesh; false: there are fewer. */
 static bool warning_text(const cli_wall *wall, uint32_t i, char *text, size_t size) {
     const bool mesh = (wall->contents.kinds & IO_MESH) != 0;
@@ -197,15 +215,8 @@ static bool warning_text(const cli_wall *wall, uint32_t i, char *text, size_t si
         sdv_tree_warning_text(built, i, text, size);
     else if ((i -= built->warning_count) < wall->mesh.warning_count)
         vsf_mesh_warning_text(&wall->mesh, i, text, size);
-    else if ((i -= wall->mesh.warning_count) == 0 && wall->turned)
-        snprintf(text, size,
-                 "it is open and seemed inside out, and was turned round; --flip off leaves it");
-    else if (i == 0 && wall->widened)
-        snprintf(text, size,
-                 "%u nodes have a radius below %.3g mm and were given that; --grid makes it less",
-                 (unsigned)wall->widened, wall->thinnest);
     else
-        return false;
+        return own_warning(wall, i - wall->mesh.warning_count, text, size);
     return true;
 }
 

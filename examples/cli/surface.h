@@ -17,10 +17,12 @@ typedef struct cli_wall {
     io_vessel vessel;     /* of a file that holds a tree */
     uint32_t widened;     /* nodes of it that were thinner than this, and were made so wide: */
     double thinnest;      /* mm */
-    bool made;            /* the mesh is from marching cubes, with their stairs */
-    bool turned;          /* it is open, seemed inside out and was turned round */
-    vsf_mesh mesh;        /* positions in mm, minus scene.origin */
-    cli_scene scene;      /* a set that has the object, and one of lines unless there are none */
+    uint32_t decimated;   /* triangles that the mesh had before it was decimated; 0: it was not */
+    uint32_t decimated_to;
+    bool made;       /* the mesh is from marching cubes, with their stairs */
+    bool turned;     /* it is open, seemed inside out and was turned round */
+    vsf_mesh mesh;   /* positions in mm, minus scene.origin */
+    cli_scene scene; /* a set that has the object, and one of lines unless there are none */
     cli_source line_source;
     vsf_near near;
     bool lit; /* `near` is there */

@@ -57,7 +57,7 @@ static void ray_of(const lao_frame_uniforms *frame, uint32_t x, uint32_t y, sdv_
 static float reach_of(const lao_frame_uniforms *frame) {
     float zoom = sdv_zoom(frame->scale, frame->depth, frame->depth.x + frame->depth.z, 1);
     return sdv_near_miss_reach(sdv_outline_width(1.25f, 0, zoom), sdv_outline_width(0.8f, 0, zoom),
-                               1.5f, 0, frame->depth.z);
+                               1.5f, 0, 0, frame->depth.z);
 }
 
 /* The traced images against C; returns how many pixels hit. */
