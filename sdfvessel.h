@@ -432,10 +432,11 @@ SDV_API void sdv_trace_shapes(const sdv_grid *grid, const sdv_shapes *shapes, co
    seen from p. `bias` (mm) is the start, off the surface. */
 SDV_API float sdv_shadow(const sdv_grid *grid, const sdv_shapes *shapes, lao_v3 p, lao_v3 light,
                          float hardness, float bias);
-/* Openness of p along its normal, 0 .. 1, from the field at 5 places up to `reach` mm away;
-   `inside` non-zero: of a wall seen from within, the room inside counts. */
-SDV_API float sdv_openness(const sdv_grid *grid, lao_v3 p, lao_v3 normal, float reach,
-                           uint32_t inside);
+/* Openness of p along its normal, 0 .. 1, from the field of the tree, combined with shapes (NULL:
+   none), at 5 places up to `reach` mm away; `inside` non-zero: of a wall seen from within, the room
+   inside counts. */
+SDV_API float sdv_openness(const sdv_grid *grid, const sdv_shapes *shapes, lao_v3 p, lao_v3 normal,
+                           float reach, uint32_t inside);
 
 /* Normal for shading at a place of the surface of `cone`: where segments meet, their normals go
    over into each other within `smoothness` of the radius, so that a chain of short segments has no
@@ -589,6 +590,7 @@ typedef struct sdv_object {
     lao_object_buffer buffers[8];
     lao_v4 box[2];
     lao_v4 shapes[1 + 4 * SDV_MOST_SHAPES];
+    lao_v4 *nearest;     /* private: the shapes, then the cones in a hierarchy, where colours ask */
     uint32_t on_device;  /* sdv_object_make_tree: 1 when the device builds the field */
     sdv_grid grid;       /* of sdv_object_make_tree; on_device: its box and cones, no cells */
     uint32_t image_size; /* private, like what follows */
@@ -618,8 +620,9 @@ SDV_API lao_result sdv_object_make(const sdv_host *host, const sdv_grid *grid,
                                    const uint8_t *colors, sdv_object *object);
 /* Combines it with shapes, before it is created or in an update. `colors`: (Optional) red, green,
    blue of the surface of each, display values; red below 0: the colour of the vessel that is
-   nearest to the place (L19 Fig. 11; as exact as the grid is far from vessels). `shapes->fields` is
-   referred to. Fails with NULL_ARGUMENT, SHAPES. */
+   nearest to the place (L19 Fig. 11), exactly, however far it is: for that cones are put into a
+   hierarchy of balls, in O(n log n). `shapes->fields` is referred to. Fails with NULL_ARGUMENT,
+   SHAPES, MEMORY. */
 SDV_API lao_result sdv_object_shapes(const sdv_host *host, const sdv_shapes *shapes,
                                      const float *colors, sdv_object *object);
 /* The same for a tree whose nodes may change every frame: only its cones are uploaded, and rows of
@@ -1076,7 +1079,8 @@ LAO_FN sdv_box sdv_box_grown(sdv_box box, float reach) {
     return r;
 }
 #define SDV_POLISH_ROUNDS 2
-/* Newton's step from a point close to the surface onto it: where the field's tangent is 0. */
+/* Newton's step from a point close to the surface onto it: where the field's tangent is 0. Of a ray
+   that grazes it may lead away; then the place before is kept. */
 LAO_FN float sdv_polish(float t, float distance, lao_v3 gradient, lao_v3 direction, float cell) {
     LAO_EXACT float slope = lao_v3_dot(gradient, direction);
     LAO_EXACT float steep = lao_max(lao_abs(slope), 0.02f);
@@ -1280,6 +1284,37 @@ LAO_FN sdv_solid sdv_solid_add(sdv_solid s, float distance, lao_int operation, l
     return r;
 }
 
+/* The nearest vessel to a place, however far: a complete binary tree of balls around cones, node i
+   over 2 i and 2 i + 1, gone through in that order from the root, 1, to 0. A leaf has up to four.
+ */
+#define SDV_LEAF_CONES 4
+/* Could a ball hold something as near as `least`? The margin is for rounding. */
+LAO_FN bool sdv_ball_reaches(lao_v3 p, lao_v4 ball, float least) {
+    lao_v3 q = lao_v3_sub(p, lao_v3_make(ball.x, ball.y, ball.z));
+    LAO_EXACT float apart = lao_sqrt(lao_v3_dot(q, q));
+    LAO_EXACT float nearest = 0.999999f * apart - ball.w;
+    return nearest <= least;
+}
+/* The next node behind all that is below this one; 0: none. */
+LAO_FN lao_int sdv_ball_next(lao_int node) {
+    lao_int next = node;
+    for (lao_int i = 0; i < 24; i++) {
+        if (next / 2 * 2 == next) {
+            break;
+        }
+        next = next / 2;
+    }
+    return next > 0 ? next + 1 : 0;
+}
+/* Of two cones the nearer, of two as near the lower. */
+LAO_FN sdv_near sdv_nearer(sdv_near n, float distance, float cone) {
+    sdv_near r = n;
+    if (distance < n.distance || (distance == n.distance && cone < n.cone)) {
+        r.distance = distance;
+        r.cone = cone;
+    }
+    return r;
+}
 /* Part of a ray in which a tree with shapes is looked for: only a union adds to the tree's box. */
 LAO_FN lao_v2 sdv_solid_span(lao_v2 box, bool united) {
     if (united) {
@@ -4879,15 +4914,18 @@ static sdv_march sdv__least(const sdv_grid *g, const sdv_ray *ray, sdv_march m) 
 /* On to the surface from a point close to it. */
 static void sdv__land(const sdv_grid *g, const sdv_ray *ray, const sdv_march *m, sdv_hit *hit) {
     lao_v3 gradient = lao_v3_make(0.0f, 0.0f, 1.0f);
-    float t = m->t;
+    float t = m->t, off = SDV_FAR;
     int i;
     for (i = 0; i <= SDV_POLISH_ROUNDS; i++) {
-        const lao_v4 *ends;
-        sdv_near n;
-        hit->position = lao_v3_along(ray->origin, ray->direction, t);
-        n = sdv__near_at(g, sdv__cell_at(g, hit->position), hit->position, ray->direction);
-        ends = g->cones + 2 * (size_t)n.cone;
-        gradient = sdv_round_cone_gradient(hit->position, ends[0], ends[1]);
+        lao_v3 p = lao_v3_along(ray->origin, ray->direction, t);
+        sdv_near n = sdv__near_at(g, sdv__cell_at(g, p), p, ray->direction);
+        const lao_v4 *ends = g->cones + 2 * (size_t)n.cone;
+        if (lao_abs(n.distance) > off) {
+            break;
+        }
+        off = lao_abs(n.distance);
+        gradient = sdv_round_cone_gradient(p, ends[0], ends[1]);
+        hit->position = p;
         hit->cone = (uint32_t)n.cone;
         hit->t = t;
         t = sdv_polish(t, n.distance, gradient, ray->direction, g->cell);
@@ -4994,14 +5032,18 @@ static lao_v3 sdv__solid_gradient(const sdv_grid *g, const sdv_shapes *shapes, c
 }
 static void sdv__solid_land(const sdv_grid *g, const sdv_shapes *shapes, const sdv_ray *ray,
                             float t, sdv_hit *hit, uint32_t *shape) {
-    lao_v3 gradient;
+    float off = SDV_FAR;
     int i;
     for (i = 0; i <= SDV_POLISH_ROUNDS; i++) {
         uint32_t cone = 0;
-        sdv_solid s;
-        hit->position = lao_v3_along(ray->origin, ray->direction, t);
-        s = sdv__solid_at(g, shapes, hit->position, &cone);
-        gradient = sdv__solid_gradient(g, shapes, &s, hit->position, cone);
+        lao_v3 p = lao_v3_along(ray->origin, ray->direction, t), gradient;
+        sdv_solid s = sdv__solid_at(g, shapes, p, &cone);
+        if (lao_abs(s.distance) > off) {
+            break;
+        }
+        off = lao_abs(s.distance);
+        gradient = sdv__solid_gradient(g, shapes, &s, p, cone);
+        hit->position = p;
         hit->cone = s.part >= 0 ? SDV_CUT_CONE : cone;
         hit->normal = hit->inside ? lao_v3_scale(gradient, -1.0f) : gradient;
         hit->t = t;
@@ -5128,14 +5170,15 @@ SDV_API lao_v3 sdv_smooth_normal(const sdv_grid *grid, lao_v3 p, uint32_t cone, 
     }
     return sdv_joint_normal(sum, normal);
 }
-SDV_API float sdv_openness(const sdv_grid *grid, lao_v3 p, lao_v3 normal, float reach,
-                           uint32_t inside) {
+SDV_API float sdv_openness(const sdv_grid *grid, const sdv_shapes *shapes, lao_v3 p, lao_v3 normal,
+                           float reach, uint32_t inside) {
     float closed = 0.0f;
     lao_int i;
     for (i = 0; i < SDV_OPEN_SAMPLES && reach > 0.0f; i++) {
         float place = sdv_open_place(reach, i);
         lao_v3 q = lao_v3_along(p, normal, place);
         float d = sdv_grid_distance(grid, q, NULL);
+        d = shapes ? sdv__solid_of(shapes, d, q, false).distance : d;
         closed = sdv_open_add(closed, inside ? -d : d, place, i);
     }
     return sdv_open_result(closed);
@@ -6160,6 +6203,104 @@ SDV_API lao_result sdv_object_make_tree(const sdv_host *host, const sdv_tree *tr
     return result;
 }
 
+/* ---- the vessel that is nearest, however far */
+/* Cones in the order of their middles, SDV_LEAF_CONES a leaf, under balls around what is below
+   (see the shared text). */
+static void sdv__nearest_order(const lao_v4 *cones, uint32_t count, uint32_t *keys) {
+    double low[3], high[3], size = 0;
+    uint32_t i, k;
+    sdv__ball_bounds(cones, 2 * count, low, high);
+    for (k = 0; k < 3; k++) {
+        size = high[k] - low[k] > size ? high[k] - low[k] : size;
+    }
+    for (i = 0; i < count; i++) {
+        const lao_v4 *c = cones + 2 * (size_t)i;
+        lao_v3 a = lao_v3_make(c[0].x, c[0].y, c[0].z), b = lao_v3_make(c[1].x, c[1].y, c[1].z);
+        sdv__piece s;
+        s.u = a;
+        s.v = b;
+        s.w = lao_v3_along(a, lao_v3_sub(b, a), 0.5f);
+        keys[i] = sdv__morton(&s, low, size);
+    }
+    sdv__sort(keys, count, keys + count, keys + 2 * (size_t)count);
+}
+static lao_v4 sdv__nearest_ball(const lao_v4 *cones, const uint32_t *order, uint32_t first,
+                                uint32_t end) {
+    lao_v3 low = lao_v3_make(SDV_FAR, SDV_FAR, SDV_FAR), high = lao_v3_scale(low, -1.0f);
+    uint32_t i, k;
+    for (i = first; i < end; i++) {
+        for (k = 0; k < 2; k++) {
+            lao_v4 c = cones[2 * (size_t)order[i] + k];
+            sdv__box_grow(&low, &high, lao_v3_make(c.x - c.w, c.y - c.w, c.z - c.w));
+            sdv__box_grow(&low, &high, lao_v3_make(c.x + c.w, c.y + c.w, c.z + c.w));
+        }
+    }
+    return first < end ? sdv__box_ball(&low, &high) : lao_v4_make(0.0f, 0.0f, 0.0f, -SDV_FAR);
+}
+static void sdv__nearest_fill(const lao_v4 *cones, uint32_t count, const uint32_t *order,
+                              uint32_t leaves, lao_v4 *balls) {
+    uint32_t node, i, wide = leaves * SDV_LEAF_CONES; /* cones below a node */
+    balls[0] = lao_v4_make(0.0f, 0.0f, 0.0f, 0.0f);
+    for (node = 1; node < 2 * leaves; node++) {
+        uint32_t first, end;
+        wide /= node > 1 && (node & (node - 1)) == 0 ? 2u : 1u; /* the first of its level */
+        first = node * wide - leaves * SDV_LEAF_CONES;
+        end = first + wide < count ? first + wide : count;
+        balls[node] = sdv__nearest_ball(cones, order, first, end);
+    }
+    for (i = 0; i < leaves; i++) {
+        float id[SDV_LEAF_CONES];
+        uint32_t k;
+        for (k = 0; k < SDV_LEAF_CONES; k++) {
+            uint32_t at = i * SDV_LEAF_CONES + k;
+            id[k] = at < count ? (float)order[at] : -1.0f;
+        }
+        balls[2 * (size_t)leaves + i] = lao_v4_make(id[0], id[1], id[2], id[3]);
+    }
+}
+/* The buffer of the shapes, which are in object->shapes: with the hierarchy behind them where one
+   takes the colour of the nearest vessel. */
+static lao_result sdv__object_nearest(const sdv_host *host, sdv_object *object) {
+    const lao_allocator *a = &object->allocator;
+    const lao_v4 *cones = NULL;
+    uint32_t i, wanted = 0, leaves = 1, count = 0, *keys;
+    uint32_t shapes = (uint32_t)object->shapes[0].x, first = 1 + 4 * shapes;
+    lao_v4 *texels;
+    for (i = 0; i < shapes; i++) {
+        wanted |= object->shapes[4 + 4 * (size_t)i].w < 0.5f;
+    }
+    for (i = 0; i < object->desc.buffer_count; i++) {
+        if (strcmp(object->buffers[i].name, "vessel_cones") == 0) {
+            cones = (const lao_v4 *)object->buffers[i].data;
+            count = object->buffers[i].texel_count / 2;
+        }
+    }
+    if (!wanted || !cones) {
+        object->shapes[0].w = 0.0f;
+        sdv__object_buffer(object, "vessel_shapes", object->shapes, first);
+        return LAO_OK;
+    }
+    for (; leaves * SDV_LEAF_CONES < count; leaves *= 2) {
+    }
+    texels = (lao_v4 *)sdv__take(a, first + 3 * (uint64_t)leaves, sizeof *texels);
+    keys = (uint32_t *)sdv__take(a, 3 * (uint64_t)count, sizeof *keys); /* and order, other */
+    if (texels && keys) {
+        object->shapes[0].z = (float)first;
+        object->shapes[0].w = (float)leaves;
+        memcpy(texels, object->shapes, first * sizeof *texels);
+        sdv__nearest_order(cones, count, keys);
+        sdv__nearest_fill(cones, count, keys + count, leaves, texels + first);
+        sdv__give(a, object->nearest);
+        object->nearest = texels;
+        sdv__object_buffer(object, "vessel_shapes", texels, first + 3 * leaves);
+        sdv__give(a, keys);
+        return LAO_OK;
+    }
+    sdv__give(a, texels);
+    sdv__give(a, keys);
+    return sdv__fail(host, SDV_LOG_MEMORY, "the nearest of %u vessels", count);
+}
+
 /* The cones of the tree as it is now, and a new box where it has left the old one. */
 static lao_result sdv__object_renew(const sdv_host *host, const sdv_tree *tree,
                                     sdv_object *object) {
@@ -6202,6 +6343,7 @@ SDV_API lao_result sdv_object_move(const sdv_host *host, const sdv_tree *tree,
     }
     if (result == LAO_OK) {
         sdv__object_grid(object, &object->grid);
+        result = object->nearest ? sdv__object_nearest(host, object) : LAO_OK;
     }
     return result;
 }
@@ -6254,13 +6396,12 @@ SDV_API lao_result sdv_object_shapes(const sdv_host *host, const sdv_shapes *sha
             to[3] = lao_v4_make(c[0], c[1], c[2], c[0] < 0.0f ? 0.0f : 1.0f);
         }
     }
-    sdv__object_buffer(object, "vessel_shapes", object->shapes, 1 + 4 * shapes->count);
     if (shapes->field_count) {
         sdv__object_buffer(object, "vessel_fields", shapes->fields, shapes->field_count);
     } else {
         sdv__object_drop(object, "vessel_fields");
     }
-    return LAO_OK;
+    return sdv__object_nearest(host, object);
 }
 
 /* Fills the buffers of a mesh, which stand one behind the other in `memory`: three texels a vertex,
@@ -6397,6 +6538,7 @@ SDV_API lao_result sdv_object_pattern(const sdv_host *host, const float *values,
 SDV_API void sdv_object_free(sdv_object *object) {
     if (object && object->allocator.release) {
         sdv__give(&object->allocator, object->pattern);
+        sdv__give(&object->allocator, object->nearest);
         sdv__give(&object->allocator, object->memory);
         sdv_grid_free(&object->grid);
         memset(object, 0, sizeof *object);
