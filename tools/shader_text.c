@@ -71,9 +71,12 @@ static void print_graph(void) {
 static void print_samples(uint32_t level, uint32_t count) {
     uint32_t i, k, n;
     for (i = 0; i < count; i += n) {
-        n = count - i >= 4 ? 4 : 1;
+        n = count - i >= 4 ? 4 : count - i >= 3 ? 3 : 1;
         printf("            sum = lao_sample_%s(sum, level%u, tangent%u, c, g",
-               n == 4 ? "four" : "one", level, level);
+               n == 4   ? "four"
+               : n == 3 ? "three"
+                        : "one",
+               level, level);
         for (k = 0; k < n; k++) {
             lao_v3 d = lao_sample_direction(level, i + k, count);
             printf(", lao_v3_make(%.9g, %.9g, %.9g)", (double)d.x, (double)d.y, (double)d.z);
