@@ -57,7 +57,8 @@ typedef struct cli_source {
     uint32_t every;
     double min_length; /* mm; negative: none is given */
     const char *bundle;
-    const char *unit; /* of trees and meshes; NULL: as the file tells, or guessed */
+    const char *unit; /* of trees, meshes, volumes; NULL: as the file tells, or guessed */
+    const char *as;   /* what it is drawn as: "lines", "tree", "surface"; NULL: by its content */
 } cli_source;
 
 /* How velocity volumes are read and traced. Numbers are 0, texts NULL where nothing is given. */
