@@ -229,6 +229,8 @@ static void take_document(view *v) {
         if (!changed) {
             hands_forget(v);
             hands_begin(v);
+            if (doc->options.frames)
+                v->film.count = (int)doc->options.frames;
         }
         title(v);
         if (v->compare_first)

@@ -266,6 +266,7 @@ static bool render(view *v, cli_shot *shot, bool small) {
     bool ok = fit_view(v, frame.view, shot->width, shot->height) &&
               w->backend->canvas(w, slot, shot->width, shot->height, shot->background, boxes,
                                  v->axes ? 3 : 0, &color, &depth, &frame.commands);
+    /* quote frame */
     import.image = "host_depth";
     import.source = depth;
     frame.target = color;
@@ -274,6 +275,7 @@ static bool render(view *v, cli_shot *shot, bool small) {
     if (own)
         frame.background[3] = 0; /* what the host has drawn shows between the lines */
     ok = ok && lao_render(v->session.context, &frame) == LAO_OK;
+    /* quote end */
     if (ok && v->ground) {
         window_ground g = make_ground(v, clip);
         w->backend->ground(w, slot, &g);

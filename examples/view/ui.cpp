@@ -58,7 +58,7 @@ void look(float scale) {
     style.FrameRounding = 3;
     style.GrabRounding = 3;
     style.WindowBorderSize = 0;
-    style.FramePadding = ImVec2(6, 3);
+    style.FramePadding = ImVec2(5, 3);
     style.ItemSpacing = ImVec2(7, 5);
     style.ScrollbarSize = 12;
     style.Colors[ImGuiCol_WindowBg] = ImVec4(background[0], background[1], background[2], 1);

@@ -19,6 +19,7 @@
 enum { WIDTH = 820, HEIGHT = 520 };
 
 static const char *viewer, *program; /* paths */
+static char programs[4096];          /* where others are looked for */
 
 typedef struct fixture {
     const char *backend;
@@ -292,8 +293,7 @@ static void film(desktop *d, const char *end) {
 static void makes_videos(void **state) {
     fixture *f = *state;
     desktop *d = f->desktop;
-    char command[8192], folder[900], path[4096];
-    snprintf(path, sizeof path, "%s", getenv("PATH"));
+    char command[8192], folder[900];
     assert_non_null(getcwd(folder, sizeof folder));
     setenv("PATH", folder, 1);
     make_ffmpeg("/bin/cat > \"$name\"");
@@ -305,7 +305,7 @@ static void makes_videos(void **state) {
     snprintf(command, sizeof command, "%s", viewer_hears(d, "command "));
     assert_non_null(strstr(command, " --frames 3 --fps 25"));
     run_command(command, "program.mp4");
-    setenv("PATH", path, 1);
+    setenv("PATH", programs, 1);
     assert_int_equal(system("test -s video.mp4 && cmp video.mp4 program.mp4"), 0);
     assert_int_equal(system("rm video.mp4 program.mp4"), 0);
     make_ffmpeg("/bin/cat > /dev/null; echo it broke >&2; exit 3");
@@ -459,6 +459,7 @@ static int set_up(void **state) {
         print_error("Xvfb cannot be started; ./run setup installs it\n");
         return -1;
     }
+    snprintf(programs, sizeof programs, "%s", getenv("PATH"));
     strcpy(f->folder, "view_XXXXXX");
     if (!mkdtemp(f->folder) || chdir(f->folder) != 0 || !getcwd(cache, sizeof cache))
         return -1;
@@ -470,6 +471,7 @@ static int set_up(void **state) {
 static int clean_up(void **state) {
     fixture *f = *state;
     viewer_kill(f->desktop);
+    setenv("PATH", programs, 1);
     return 0;
 }
 
