@@ -272,7 +272,7 @@ typedef enum lao_repeat {
                                it and at its level; `repeat_setting` (optional): so often each turn */
 } lao_repeat;
 typedef enum lao_scope {
-    LAO_SCOPE_FRAME,
+    LAO_SCOPE_FRAME,  /* once, with the settings of the first set that its conditions hold for */
     LAO_SCOPE_PER_SET /* consecutive rows replay for each set; those that compose, behind all sets'
                          shading */
 } lao_scope;
@@ -300,7 +300,7 @@ typedef enum lao_depth_test {
 } lao_depth_test;
 
 #define LAO_MAX_BUFFERS 24 /* of all modules of a context */
-#define LAO_MAX_READS 28
+#define LAO_MAX_READS 16 /* texture units that every stage has at least (OpenGL 3.3, Vulkan) */
 #define LAO_MAX_WRITES 6
 #define LAO_MAX_CONSTANTS 12
 #define LAO_MAX_CONDITIONS 3
@@ -593,7 +593,7 @@ typedef struct lao_view {
     uint32_t id;
 } lao_view; /* 0: none */
 
-#define LAO_BACKEND_ABI 2u
+#define LAO_BACKEND_ABI 3u
 struct lao_backend; /* the seam, below; the host only carries it from lao_*_backend to lao_create */
 
 /* A set of polylines. Points on a line that repeat bit for bit are merged; a line whose first and
@@ -604,7 +604,9 @@ typedef struct lao_lines_desc {
     uint32_t point_count;
     const uint32_t *offsets; /* line_count + 1 indices of points; NULL: one line of all points */
     const float *points;     /* 3 * point_count, mm */
-    const float *times;      /* (Optional) point_count, ms; NaN: never; absent: 0 */
+    const float *times;      /* (Optional) point_count, ms; NaN: never; absent: 0. A frame of a
+                                trail draws the segments near its time alone, for which 4 bytes
+                                each are kept */
     const uint8_t *colors;   /* (Optional) 4 * point_count, RGBA, display values */
     float color[4];          /* without `colors`: one colour, display values 0..1; all zero: sand */
 } lao_lines_desc;
@@ -647,7 +649,8 @@ enum {
     LAO_FRAME_TIMINGS = 1,         /* measure every pass (GL: finishes after each; slow) */
     LAO_FRAME_SHARED_OCCLUSION = 2 /* sets occlude each other: all are drawn into one G-buffer,
                                       which is occluded and shaded once, with the first set's
-                                      settings; otherwise each occludes itself alone */
+                                      settings; otherwise each occludes itself alone. Objects of
+                                      further modules are drawn as ever */
 };
 
 typedef struct lao_frame {
@@ -920,7 +923,7 @@ typedef struct lao_plan_desc {
     uint32_t has_target;
     uint32_t item_count;                       /* the most that an object has */
     uint32_t further_items[LAO_FURTHER_ITEMS]; /* likewise */
-    const uint32_t *buffers;   /* per set: bit i: has lao_graph.buffers[i]; NULL: no set has any */
+    const uint32_t *buffers;   /* per set: bit i: has lao_graph.buffers[i]; NULL: lines alone */
     uint32_t shared_occlusion; /* LAO_FRAME_SHARED_OCCLUSION */
     const lao_shader *const
         *shaders; /* by index in lao_graph.shader_names; NULL entries allowed without constants */
@@ -973,17 +976,33 @@ typedef struct lao_buffer_desc {
     const void *data;
 } lao_buffer_desc;
 
+/* Segments that begin at about the same time: texels first .. first + count - 1 of the buffer
+   "#order" hold their numbers. */
+typedef struct lao_group {
+    float begin, end; /* ms: the earliest and the latest time of their points */
+    uint32_t first, count;
+} lao_group;
+
 /* What one draw reads and how much it draws: an object, or a stretch of a line set that fits one
    texel buffer (segment s reads texels s .. s + 3). */
 typedef struct lao_chunk {
     void
         *buffers[LAO_MAX_BUFFERS]; /* backend buffers by index in lao_graph.buffers; NULL: absent */
     uint32_t count;                /* segments; triangles */
+    const lao_group *groups;       /* in order of time; NULL: the lines have no times */
+    uint32_t group_count;
 } lao_chunk;
+
+/* The times that a set shows: |t - now| <= length (ms), to the nearest repetition (period > 0). */
+typedef struct lao_window {
+    int limited; /* 0: everything */
+    float now, length, period;
+} lao_window;
 
 typedef struct lao_draw {
     const lao_chunk *chunks; /* of the lines */
     uint32_t chunk_count;
+    lao_window window;       /* of the lines */
     const lao_chunk *object; /* NULL: none */
 } lao_draw;
 
@@ -1007,6 +1026,17 @@ typedef struct lao_execution {
    holds the buffers of the set's object. Thread: any. */
 LAO_API uint32_t lao_step_draws(const lao_execution *execution, const lao_plan_step *step,
                                 const lao_chunk **chunks);
+
+/* A stretch of a draw: vertices of segments first .. first + count - 1. `next` is lao_step_range's
+   own. */
+typedef struct lao_range {
+    uint32_t first, count, next;
+} lao_range;
+/* Turns `range`, all zero at first, into the next stretch of a chunk that a LAO_PASS_DRAW_LINES
+   step draws; returns 0 when there is none left. A row that reads "#order" leaves out the groups
+   that the set's window does not reach; any other draws all segments. Thread: any. */
+LAO_API int lao_step_range(const lao_execution *execution, const lao_plan_step *step,
+                           const lao_chunk *chunk, lao_range *range);
 
 typedef struct lao_backend {
     uint32_t abi; /* LAO_BACKEND_ABI */
@@ -2144,8 +2174,9 @@ extern "C" {
 #define LAO__READ(image) {image, LAO_LEVEL_SAME, 0, LAO_PHASE_THIS, LAO_LOAD_DISCARD}
 #define LAO__READ_FINER(image) {image, LAO_LEVEL_FINER, 0, LAO_PHASE_THIS, LAO_LOAD_DISCARD}
 #define LAO__READ_LEVEL(image, level) {image, LAO_LEVEL_INDEX, level, LAO_PHASE_THIS, LAO_LOAD_DISCARD}
-#define LAO__READ_ALL(image) LAO__READ_LEVEL(image, 0), LAO__READ_LEVEL(image, 1), LAO__READ_LEVEL(image, 2), LAO__READ_LEVEL(image, 3), \
-                             LAO__READ_LEVEL(image, 4), LAO__READ_LEVEL(image, 5), LAO__READ_LEVEL(image, 6), LAO__READ_LEVEL(image, 7)
+#define LAO__READ_COARSE(image) LAO__READ_LEVEL(image, 1), LAO__READ_LEVEL(image, 2), LAO__READ_LEVEL(image, 3), LAO__READ_LEVEL(image, 4), \
+                                LAO__READ_LEVEL(image, 5), LAO__READ_LEVEL(image, 6), LAO__READ_LEVEL(image, 7)
+#define LAO__READ_ALL(image) LAO__READ_LEVEL(image, 0), LAO__READ_COARSE(image)
 #define LAO__CLEAR(image) {image, LAO_LEVEL_SAME, 0, LAO_PHASE_THIS, LAO_LOAD_CLEAR}
 #define LAO__KEEP(image) {image, LAO_LEVEL_SAME, 0, LAO_PHASE_THIS, LAO_LOAD_KEEP}
 #define LAO__WRITE(image) {image, LAO_LEVEL_SAME, 0, LAO_PHASE_THIS, LAO_LOAD_DISCARD}
@@ -2155,6 +2186,7 @@ extern "C" {
 #define LAO__UNKNOWN 0.501960784f /* no tangent: 128 of 255, about 0 */
 #define LAO__ALWAYS {{NULL, 0, 0}}
 #define LAO__ANY {NULL, 0, 0}
+#define LAO__LINES {"#points", '>', 0} /* sets of objects alone have nothing to draw or to shade here */
 
 static const lao_image_row lao__images[] = {
     /* name          format              size           w  h  levels    flags             encoding               clear         when                                    channels */
@@ -2178,37 +2210,37 @@ static const lao_pass_row lao__passes[] = {
      {LAO__WRITE("zbuffer")}, {LAO__READ("host_depth")}},
     /* G-buffer: colour and mask, tangent and zoom, linear depth (METHODS 1.1). One row of four draws a set: what the fragments need to know of the line's
        outline or of a fade costs where there is none, and who writes depth is tested late */
-    {"lines", LAO_PASS_DRAW_LINES, "lines", 0, LAO_STAGE_DRAW, LAO_SCOPE_PER_SET, LAO_REPEAT_NONE, NULL, LAO_BLEND_NONE, LAO_DEPTH_NEARER, LAO_CULL_NONE, {{"halo", '=', LAO_HALO_NONE}, {"trail", '!', LAO_TRAIL_OPACITY}},
-     {LAO__CLEAR("color"), LAO__CLEAR("tangent"), LAO__CLEAR("depth"), LAO__KEEP("zbuffer")}, {LAO__READ("#points"), LAO__READ("#colors")}},
-    {"lines_fading", LAO_PASS_DRAW_LINES, "lines_rim", 0, LAO_STAGE_DRAW, LAO_SCOPE_PER_SET, LAO_REPEAT_NONE, NULL, LAO_BLEND_NONE, LAO_DEPTH_NEARER, LAO_CULL_NONE, {{"halo", '=', LAO_HALO_NONE}, {"trail", '=', LAO_TRAIL_OPACITY}},
-     {LAO__CLEAR("color"), LAO__CLEAR("tangent"), LAO__CLEAR("depth"), LAO__KEEP("zbuffer")}, {LAO__READ("#points"), LAO__READ("#colors")}},
-    {"lines_rim", LAO_PASS_DRAW_LINES, "lines_rim", 0, LAO_STAGE_DRAW, LAO_SCOPE_PER_SET, LAO_REPEAT_NONE, NULL, LAO_BLEND_NONE, LAO_DEPTH_NEARER, LAO_CULL_NONE, {{"halo", '=', LAO_HALO_UNIFORM}},
-     {LAO__CLEAR("color"), LAO__CLEAR("tangent"), LAO__CLEAR("depth"), LAO__KEEP("zbuffer")}, {LAO__READ("#points"), LAO__READ("#colors")}},
-    {"lines_halo", LAO_PASS_DRAW_LINES, "lines_halo", 0, LAO_STAGE_DRAW, LAO_SCOPE_PER_SET, LAO_REPEAT_NONE, NULL, LAO_BLEND_NONE, LAO_DEPTH_NEARER, LAO_CULL_NONE, {{"halo", '=', LAO_HALO_DEPTH}},
-     {LAO__CLEAR("color"), LAO__CLEAR("tangent"), LAO__CLEAR("depth"), LAO__KEEP("zbuffer")}, {LAO__READ("#points"), LAO__READ("#colors")}},
+    {"lines", LAO_PASS_DRAW_LINES, "lines", 0, LAO_STAGE_DRAW, LAO_SCOPE_PER_SET, LAO_REPEAT_NONE, NULL, LAO_BLEND_NONE, LAO_DEPTH_NEARER, LAO_CULL_NONE, {LAO__LINES, {"halo", '=', LAO_HALO_NONE}, {"trail", '!', LAO_TRAIL_OPACITY}},
+     {LAO__CLEAR("color"), LAO__CLEAR("tangent"), LAO__CLEAR("depth"), LAO__KEEP("zbuffer")}, {LAO__READ("#points"), LAO__READ("#colors"), LAO__READ("#order")}},
+    {"lines_fading", LAO_PASS_DRAW_LINES, "lines_rim", 0, LAO_STAGE_DRAW, LAO_SCOPE_PER_SET, LAO_REPEAT_NONE, NULL, LAO_BLEND_NONE, LAO_DEPTH_NEARER, LAO_CULL_NONE, {LAO__LINES, {"halo", '=', LAO_HALO_NONE}, {"trail", '=', LAO_TRAIL_OPACITY}},
+     {LAO__CLEAR("color"), LAO__CLEAR("tangent"), LAO__CLEAR("depth"), LAO__KEEP("zbuffer")}, {LAO__READ("#points"), LAO__READ("#colors"), LAO__READ("#order")}},
+    {"lines_rim", LAO_PASS_DRAW_LINES, "lines_rim", 0, LAO_STAGE_DRAW, LAO_SCOPE_PER_SET, LAO_REPEAT_NONE, NULL, LAO_BLEND_NONE, LAO_DEPTH_NEARER, LAO_CULL_NONE, {LAO__LINES, {"halo", '=', LAO_HALO_UNIFORM}},
+     {LAO__CLEAR("color"), LAO__CLEAR("tangent"), LAO__CLEAR("depth"), LAO__KEEP("zbuffer")}, {LAO__READ("#points"), LAO__READ("#colors"), LAO__READ("#order")}},
+    {"lines_halo", LAO_PASS_DRAW_LINES, "lines_halo", 0, LAO_STAGE_DRAW, LAO_SCOPE_PER_SET, LAO_REPEAT_NONE, NULL, LAO_BLEND_NONE, LAO_DEPTH_NEARER, LAO_CULL_NONE, {LAO__LINES, {"halo", '=', LAO_HALO_DEPTH}},
+     {LAO__CLEAR("color"), LAO__CLEAR("tangent"), LAO__CLEAR("depth"), LAO__KEEP("zbuffer")}, {LAO__READ("#points"), LAO__READ("#colors"), LAO__READ("#order")}},
     /* the host's G-buffer instead of our lines: its mask as depth, for the passes that skip background by it */
     {"cover", LAO_PASS_FULLSCREEN, "cover", 0, LAO_STAGE_DRAW, LAO_SCOPE_PER_SET, LAO_REPEAT_NONE, NULL, LAO_BLEND_NONE, LAO_DEPTH_ALWAYS, LAO_CULL_NONE, {{"@color", '>', 0}},
      {LAO__CLEAR("zbuffer")}, {LAO__READ("color")}},
     /* level 0 of what a sample reads */
-    {"level_zero", LAO_PASS_FULLSCREEN, "level_zero", 0, LAO_STAGE_SHADE, LAO_SCOPE_PER_SET, LAO_REPEAT_NONE, NULL, LAO_BLEND_NONE, LAO_DEPTH_COVERED, LAO_CULL_NONE, {{"occlusion", '=', 1}},
+    {"level_zero", LAO_PASS_FULLSCREEN, "level_zero", 0, LAO_STAGE_SHADE, LAO_SCOPE_PER_SET, LAO_REPEAT_NONE, NULL, LAO_BLEND_NONE, LAO_DEPTH_COVERED, LAO_CULL_NONE, {LAO__LINES, {"occlusion", '=', 1}},
      {LAO__CLEAR("level"), LAO__CLEAR("level_tangent"), LAO__KEEP("zbuffer")},
      {LAO__READ("color"), LAO__READ("tangent"), LAO__READ("depth")}},
     /* coarser levels, and from level 1 on the sums that the next one is made of */
-    {"level_one", LAO_PASS_FULLSCREEN, "level_one", 0, LAO_STAGE_SHADE, LAO_SCOPE_PER_SET, LAO_REPEAT_NONE, NULL, LAO_BLEND_NONE, LAO_DEPTH_NONE, LAO_CULL_NONE, {{"occlusion", '=', 1}, {"levels", '>', 1}},
+    {"level_one", LAO_PASS_FULLSCREEN, "level_one", 0, LAO_STAGE_SHADE, LAO_SCOPE_PER_SET, LAO_REPEAT_NONE, NULL, LAO_BLEND_NONE, LAO_DEPTH_NONE, LAO_CULL_NONE, {LAO__LINES, {"occlusion", '=', 1}, {"levels", '>', 1}},
      {LAO__WRITE_LEVEL("tensor", 1), LAO__WRITE_LEVEL("level", 1), LAO__WRITE_LEVEL("level_tangent", 1)},
      {LAO__READ_LEVEL("level", 0), LAO__READ_LEVEL("level_tangent", 0)}},
-    {"level_up", LAO_PASS_FULLSCREEN, "level_up", 0, LAO_STAGE_SHADE, LAO_SCOPE_PER_SET, LAO_REPEAT_LEVELS_UP, NULL, LAO_BLEND_NONE, LAO_DEPTH_NONE, LAO_CULL_NONE, {{"occlusion", '=', 1}},
+    {"level_up", LAO_PASS_FULLSCREEN, "level_up", 0, LAO_STAGE_SHADE, LAO_SCOPE_PER_SET, LAO_REPEAT_LEVELS_UP, NULL, LAO_BLEND_NONE, LAO_DEPTH_NONE, LAO_CULL_NONE, {LAO__LINES, {"occlusion", '=', 1}},
      {LAO__WRITE_ABOVE("tensor", 1), LAO__WRITE("level"), LAO__WRITE("level_tangent")},
      {LAO__READ_FINER("tensor"), LAO__READ_FINER("level_tangent")}},
-    {"occlusion", LAO_PASS_FULLSCREEN, "occlusion", 0, LAO_STAGE_SHADE, LAO_SCOPE_PER_SET, LAO_REPEAT_NONE, NULL, LAO_BLEND_NONE, LAO_DEPTH_COVERED, LAO_CULL_NONE, {{"occlusion", '=', 1}},
+    {"occlusion", LAO_PASS_FULLSCREEN, "occlusion", 0, LAO_STAGE_SHADE, LAO_SCOPE_PER_SET, LAO_REPEAT_NONE, NULL, LAO_BLEND_NONE, LAO_DEPTH_COVERED, LAO_CULL_NONE, {LAO__LINES, {"occlusion", '=', 1}},
      {LAO__CLEAR("ao"), LAO__KEEP("zbuffer")},
-     {LAO__READ("tangent"), LAO__READ_ALL("level"), LAO__READ_ALL("level_tangent")}},
+     {LAO__READ("tangent"), LAO__READ_ALL("level"), LAO__READ_COARSE("level_tangent")}},
     /* for debugging only: shadows leak into what is not shadowed (Koehler 2017, 4.4) */
-    {"smooth_x", LAO_PASS_FULLSCREEN, "smooth", 0, LAO_STAGE_SHADE, LAO_SCOPE_PER_SET, LAO_REPEAT_COUNT, "smoothing", LAO_BLEND_NONE, LAO_DEPTH_NONE, LAO_CULL_NONE, {{"occlusion", '=', 1}},
+    {"smooth_x", LAO_PASS_FULLSCREEN, "smooth", 0, LAO_STAGE_SHADE, LAO_SCOPE_PER_SET, LAO_REPEAT_COUNT, "smoothing", LAO_BLEND_NONE, LAO_DEPTH_NONE, LAO_CULL_NONE, {LAO__LINES, {"occlusion", '=', 1}},
      {LAO__OTHER("ao")}, {LAO__READ("ao"), LAO__READ("color")}},
-    {"smooth_y", LAO_PASS_FULLSCREEN, "smooth", 1, LAO_STAGE_SHADE, LAO_SCOPE_PER_SET, LAO_REPEAT_COUNT, "smoothing", LAO_BLEND_NONE, LAO_DEPTH_NONE, LAO_CULL_NONE, {{"occlusion", '=', 1}},
+    {"smooth_y", LAO_PASS_FULLSCREEN, "smooth", 1, LAO_STAGE_SHADE, LAO_SCOPE_PER_SET, LAO_REPEAT_COUNT, "smoothing", LAO_BLEND_NONE, LAO_DEPTH_NONE, LAO_CULL_NONE, {LAO__LINES, {"occlusion", '=', 1}},
      {LAO__OTHER("ao")}, {LAO__READ("ao"), LAO__READ("color")}},
-    {"shade", LAO_PASS_FULLSCREEN, "shade", 0, LAO_STAGE_SHADE, LAO_SCOPE_PER_SET, LAO_REPEAT_NONE, NULL, LAO_BLEND_NONE, LAO_DEPTH_COVERED, LAO_CULL_NONE, LAO__ALWAYS,
+    {"shade", LAO_PASS_FULLSCREEN, "shade", 0, LAO_STAGE_SHADE, LAO_SCOPE_PER_SET, LAO_REPEAT_NONE, NULL, LAO_BLEND_NONE, LAO_DEPTH_COVERED, LAO_CULL_NONE, {LAO__LINES},
      {LAO__KEEP("shaded"), LAO__KEEP("zbuffer")}, {LAO__READ("color"), LAO__READ("tangent"), LAO__READ("ao")}},
     /* box filter over the samples of a pixel, and the background */
     {"resolve", LAO_PASS_FULLSCREEN, "resolve", 0, LAO_STAGE_PRESENT, LAO_SCOPE_FRAME, LAO_REPEAT_NONE, NULL, LAO_BLEND_NONE, LAO_DEPTH_NONE, LAO_CULL_NONE, LAO__ALWAYS,
@@ -2233,7 +2265,7 @@ static const lao_preset_row lao__presets[] = {
     {"paper", "align", LAO_ALIGN_PAPER}
 };
 
-static const lao_buffer_row lao__buffers[] = {{"points", LAO_FORMAT_RGBA32F}, {"colors", LAO_FORMAT_RGBA8}};
+static const lao_buffer_row lao__buffers[] = {{"points", LAO_FORMAT_RGBA32F}, {"colors", LAO_FORMAT_RGBA8}, {"order", LAO_FORMAT_R32F}};
 
 static const lao_module lao__lines_module = {
     "lines",
@@ -2904,8 +2936,20 @@ static int lao__row_is_used(const lao_graph *graph, uint32_t index) {
     return 0;
 }
 
+static const lao_shader *lao__shader_find(const lao_shader *shaders, uint32_t count,
+                                          const char *name) {
+    uint32_t i;
+    for (i = 0; i < count; i++) {
+        if (strcmp(shaders[i].name, name) == 0) {
+            return &shaders[i];
+        }
+    }
+    return NULL;
+}
+
 int lao_graph_check(const lao_graph *graph, const lao_shader *shaders, uint32_t shader_count,
                     char *text, size_t text_size) {
+    const lao_shader *shader;
     uint32_t i, k, m, used;
     if (lao__check_names(graph, text, text_size) != 0) {
         return -1;
@@ -2951,15 +2995,19 @@ int lao_graph_check(const lao_graph *graph, const lao_shader *shaders, uint32_t 
             return lao__fault(text, text_size, "nothing uses what pass '%s' writes%s", row->name,
                               "");
         }
-        for (k = 0; shaders && k < shader_count && strcmp(shaders[k].name, row->shader) != 0; k++) {
+        shader = lao__shader_find(graph->modules[m]->shaders, graph->modules[m]->shader_count,
+                                  row->shader);
+        if (!shader) {
+            shader = lao__shader_find(shaders, shaders ? shader_count : 0, row->shader);
         }
-        used = shaders && k < shader_count;
-        for (k = 0; k < graph->modules[m]->shader_count; k++) {
-            used |= strcmp(graph->modules[m]->shaders[k].name, row->shader) == 0;
-        }
-        if (shaders && !used) {
+        if (shaders && !shader) {
             return lao__fault(text, text_size, "pass '%s' has no shader '%s'", row->name,
                               row->shader);
+        }
+        if (shader && shader->texture_count > LAO_MAX_READS) {
+            return lao__fault(text, text_size,
+                              "shader '%s' of pass '%s' has more textures than a pass can read",
+                              row->shader, row->name);
         }
     }
     for (i = 0; i < graph->image_count; i++) {
@@ -3058,6 +3106,17 @@ static uint32_t lao__import_find(const lao_plan_desc *desc, const char *image) {
     return LAO_NO_INDEX;
 }
 
+/* Buffers of the lines, the first of every context. */
+#define LAO__LINE_BUFFERS ((1u << lao__lines_module.buffer_count) - 1)
+
+/* Which buffers a set has, as bits. */
+static uint32_t lao__set_buffers(const lao__planner *p, uint32_t set) {
+    if (p->desc->buffers) {
+        return p->desc->buffers[set];
+    }
+    return p->graph->modules[0] == &lao__lines_module ? LAO__LINE_BUFFERS : 0;
+}
+
 static int lao__holds(const lao__planner *p, uint32_t module, uint32_t set, const lao_when *when) {
     float value;
     if (!when->name) {
@@ -3071,7 +3130,7 @@ static int lao__holds(const lao__planner *p, uint32_t module, uint32_t set, cons
             value = 2.0f;
         }
     } else if (when->name[0] == LAO__BUFFER_MARK) {
-        uint32_t present = p->desc->buffers ? p->desc->buffers[set] : 0;
+        uint32_t present = lao__set_buffers(p, set);
         value = (float)((present >> lao__buffer_find(p->graph, when->name)) & 1u);
     } else {
         value = lao__value(p, module, set, when->name);
@@ -3229,10 +3288,11 @@ static int lao__is_written(const lao_plan *plan, uint32_t instance, uint32_t end
     return 0;
 }
 
-/* Whether the row draws all sets into one G-buffer. */
-static int lao__draws_together(const lao__planner *p, const lao_pass_row *row) {
-    return p->desc->shared_occlusion && row->stage == LAO_STAGE_DRAW &&
-           row->scope == LAO_SCOPE_PER_SET;
+/* Whether the row draws the lines of all sets into one G-buffer. */
+static int lao__draws_together(const lao__planner *p, uint32_t pass) {
+    const lao_pass_row *row = p->graph->passes[pass];
+    return p->desc->shared_occlusion && p->graph->pass_modules[pass] == 0 &&
+           row->stage == LAO_STAGE_DRAW && row->scope == LAO_SCOPE_PER_SET;
 }
 
 static void lao__step_write(lao__planner *p, lao_plan_step *step, const lao_reference *reference) {
@@ -3251,7 +3311,7 @@ static void lao__step_write(lao__planner *p, lao_plan_step *step, const lao_refe
     write.clear = reference->load == LAO_LOAD_DISCARD ? 2 : reference->load == LAO_LOAD_CLEAR;
     /* sets that share one G-buffer draw into what the first of them cleared */
     if ((reference->load == LAO_LOAD_KEEP ||
-         (reference->load == LAO_LOAD_CLEAR && lao__draws_together(p, step->row))) &&
+         (reference->load == LAO_LOAD_CLEAR && lao__draws_together(p, step->pass))) &&
         !(row->flags & LAO_IMAGE_IMPORT)) {
         write.clear =
             instance != LAO_NO_INDEX && lao__is_written(p->plan, instance, p->plan->step_count) ? 0
@@ -3277,7 +3337,7 @@ static int32_t lao__step_constant(const lao__planner *p, const lao_plan_step *st
     }
     for (i = 0; strncmp(name, "has_", 4) == 0 && i < p->graph->buffer_count; i++) {
         if (strcmp(p->graph->buffers[i]->name, name + 4) == 0) {
-            return p->desc->buffers ? (int32_t)((p->desc->buffers[step->set] >> i) & 1u) : 0;
+            return (int32_t)((lao__set_buffers(p, step->set) >> i) & 1u);
         }
     }
     return (int32_t)lao__value(p, step->module, step->set, name);
@@ -3401,24 +3461,37 @@ static void lao__plan_pass(lao__planner *p, uint32_t pass, uint32_t set) {
     }
 }
 
-/* Consecutive rows of each set. With shared occlusion a row at a time draws all sets, and what
-   comes after drawing runs once, by the first set's settings. */
+/* Consecutive rows of each set. With shared occlusion a row of the lines at a time draws all sets,
+   and what comes after drawing runs once, by the first set's settings; further modules follow. */
 static void lao__plan_sets(lao__planner *p, uint32_t first, uint32_t end) {
-    uint32_t i, set;
-    if (!p->desc->shared_occlusion || p->graph->passes[first]->stage == LAO_STAGE_COMPOSE) {
-        for (set = 0; set < p->desc->set_count; set++) {
-            for (i = first; i < end; i++) {
-                lao__plan_pass(p, i, set);
-            }
-        }
-        return;
-    }
-    for (i = first; i < end; i++) {
-        uint32_t count = lao__draws_together(p, p->graph->passes[i]) ? p->desc->set_count : 1;
+    int shared = p->desc->shared_occlusion && p->graph->passes[first]->stage != LAO_STAGE_COMPOSE;
+    uint32_t i, set, count;
+    for (i = first; shared && i < end; i++) {
+        count = p->graph->pass_modules[i] > 0 ? 0
+                : lao__draws_together(p, i)   ? p->desc->set_count
+                                              : 1;
         for (set = 0; set < count; set++) {
             lao__plan_pass(p, i, set);
         }
     }
+    for (set = 0; set < p->desc->set_count; set++) {
+        for (i = first; i < end; i++) {
+            if (!shared || p->graph->pass_modules[i] > 0) {
+                lao__plan_pass(p, i, set);
+            }
+        }
+    }
+}
+
+/* The set whose settings a row of the whole frame follows. */
+static uint32_t lao__frame_set_of(const lao__planner *p, uint32_t pass) {
+    uint32_t set;
+    for (set = 0; set < p->desc->set_count; set++) {
+        if (lao__row_runs(p, pass, set)) {
+            return set;
+        }
+    }
+    return 0;
 }
 
 /* Gives every instance memory; those whose lives do not meet share it. */
@@ -3570,7 +3643,7 @@ lao_result lao_plan_make(const lao_graph *graph, const lao_plan_desc *desc,
     for (pass = 0; pass < graph->pass_count && !p.failed; pass = end) {
         end = pass + 1;
         if (graph->passes[pass]->scope == LAO_SCOPE_FRAME) {
-            lao__plan_pass(&p, pass, 0);
+            lao__plan_pass(&p, pass, lao__frame_set_of(&p, pass));
             continue;
         }
         /* composing begins when all sets are shaded */
@@ -3663,6 +3736,7 @@ void lao_plan_print(const lao_graph *graph, const lao_plan *plan,
  * context */
 
 #define LAO__KEY_SIZE 9
+#define LAO__GROUPS 256u /* of a chunk, at most */
 
 typedef struct lao__lines {
     lao_chunk *chunks;
@@ -3887,6 +3961,7 @@ static void lao__chunk_clear(lao_context *context, lao_chunk *chunk) {
             context->backend.buffer_destroy(context->self, chunk->buffers[i]);
         }
     }
+    lao__delete(&context->allocator, (void *)chunk->groups, LAO__GROUPS, sizeof *chunk->groups);
     memset(chunk, 0, sizeof *chunk);
 }
 
@@ -3980,6 +4055,7 @@ typedef struct lao__texels {
     float *points;   /* x, y, z, time */
     uint8_t *colors; /* RGBA */
     uint64_t count;
+    int timed;
 } lao__texels;
 
 /* A time that is none, or too large to be told from a ghost's, is never reached. */
@@ -4096,7 +4172,108 @@ static void lao__lines_box(lao__lines *lines, const lao_lines_desc *desc) {
 }
 
 /* Rows of the line module's buffers, which stand first in every graph. */
-enum { LAO__BUFFER_POINTS, LAO__BUFFER_COLORS };
+enum { LAO__BUFFER_POINTS, LAO__BUFFER_COLORS, LAO__BUFFER_ORDER };
+
+/* The time at which segment i begins; of none that is never reached, or lies between two lines. */
+static int lao__segment_time(const float *points, uint32_t i, float *begin, float *end) {
+    const float a = points[4 * ((size_t)i + 1) + 3], b = points[4 * ((size_t)i + 2) + 3];
+    *begin = lao_min(a, b);
+    *end = lao_max(a, b);
+    return *end < 1.0e30f;
+}
+
+enum { LAO__BINS = 65536 };
+
+/* Segments by the bin of time in which they begin; `groups` of about as many segments each. */
+typedef struct lao__order {
+    const float *points;
+    uint32_t segment_count, total, group_count;
+    double earliest, per_bin;
+    uint32_t *bins; /* LAO__BINS: first segments, then groups */
+    lao_group *groups;
+    float *order; /* numbers of segments: floats tell them apart */
+} lao__order;
+
+static uint32_t lao__bin(const lao__order *o, float begin) {
+    return (uint32_t)((begin - o->earliest) * o->per_bin);
+}
+
+static void lao__order_count(lao__order *o) {
+    float begin, end, earliest = 0, latest = 0;
+    uint32_t i;
+    for (i = 0; i < o->segment_count; i++) {
+        if (lao__segment_time(o->points, i, &begin, &end)) {
+            earliest = o->total ? lao_min(earliest, begin) : begin;
+            latest = o->total ? lao_max(latest, begin) : begin;
+            o->total++;
+        }
+    }
+    o->earliest = earliest;
+    o->per_bin = latest > earliest ? (LAO__BINS - 1) / ((double)latest - earliest) : 0;
+    for (i = 0; i < o->segment_count; i++) {
+        if (lao__segment_time(o->points, i, &begin, &end)) {
+            o->bins[lao__bin(o, begin)]++;
+        }
+    }
+}
+
+/* Bins, in order, into the last group until it has its share. */
+static void lao__order_group(lao__order *o) {
+    uint32_t i, filled = 0;
+    for (i = 0; i < LAO__BINS; i++) {
+        uint32_t n = o->bins[i];
+        if (n > 0 && (uint64_t)filled * LAO__GROUPS >= (uint64_t)o->group_count * o->total) {
+            o->groups[o->group_count++].first = filled;
+        }
+        o->bins[i] = n > 0 ? o->group_count - 1 : 0;
+        filled += n;
+    }
+}
+
+/* Within a group segments keep the order of the lines, in which their points lie in memory. */
+static void lao__order_fill(lao__order *o) {
+    float begin, end;
+    uint32_t i;
+    for (i = 0; i < o->segment_count; i++) {
+        if (lao__segment_time(o->points, i, &begin, &end)) {
+            lao_group *group = &o->groups[o->bins[lao__bin(o, begin)]];
+            group->begin = group->count ? lao_min(group->begin, begin) : begin;
+            group->end = group->count ? lao_max(group->end, end) : end;
+            o->order[group->first + group->count++] = (float)i;
+        }
+    }
+}
+
+/* Puts the buffer "#order" and its groups into a chunk whose points are given. */
+static lao_result lao__chunk_order(lao_context *context, lao_chunk *chunk, const float *points) {
+    const lao_allocator *allocator = &context->allocator;
+    lao_result result;
+    lao_buffer_desc buffer;
+    lao__order o;
+    memset(&o, 0, sizeof o);
+    o.points = points;
+    o.segment_count = chunk->count;
+    o.bins = (uint32_t *)lao__new(allocator, LAO__BINS, sizeof *o.bins);
+    o.order = (float *)lao__new(allocator, chunk->count, sizeof *o.order);
+    o.groups = (lao_group *)lao__new(allocator, LAO__GROUPS, sizeof *o.groups);
+    chunk->groups = o.groups;
+    if (o.bins && o.order && o.groups) {
+        lao__order_count(&o);
+        lao__order_group(&o);
+        lao__order_fill(&o);
+        chunk->group_count = o.group_count;
+        buffer.format = LAO_FORMAT_R32F;
+        buffer.texel_count = o.total ? o.total : 1;
+        buffer.data = o.order;
+        result = context->backend.buffer_create(context->self, &buffer,
+                                                &chunk->buffers[LAO__BUFFER_ORDER]);
+    } else {
+        result = lao__fail(context, LAO_LOG_LINES_MEMORY, NULL);
+    }
+    lao__delete(allocator, o.bins, LAO__BINS, sizeof *o.bins);
+    lao__delete(allocator, o.order, chunk->count, sizeof *o.order);
+    return result;
+}
 
 static lao_result lao__chunk_make(lao_context *context, lao_chunk *chunk, const lao__texels *texels,
                                   uint64_t first, uint32_t count) {
@@ -4114,6 +4291,9 @@ static lao_result lao__chunk_make(lao_context *context, lao_chunk *chunk, const 
                                                 &chunk->buffers[LAO__BUFFER_COLORS]);
     }
     chunk->count = count - 3;
+    if (result == LAO_OK && texels->timed) {
+        result = lao__chunk_order(context, chunk, texels->points + 4 * first);
+    }
     return result;
 }
 
@@ -4124,7 +4304,7 @@ static lao_result lao__lines_upload(lao_context *context, const lao__texels *tex
     uint64_t most = context->caps.max_buffer_texels, first, segments;
     lao_result result = LAO_OK;
     uint32_t i;
-    most = most > 0x20000000u ? 0x20000000u : most; /* 4 vertices each in 31 bits */
+    most = most > 0x1000000u ? 0x1000000u : most; /* segments that floats tell apart */
     if (texels->count < 4) {
         return LAO_OK;
     }
@@ -4153,6 +4333,7 @@ static lao_result lao__lines_fill(lao_context *context, const lao_lines_desc *de
     uint64_t capacity;
     memset(lines, 0, sizeof *lines);
     memset(&texels, 0, sizeof texels);
+    texels.timed = desc->times != NULL;
     whole[0] = 0;
     whole[1] = desc->point_count;
     offsets = offsets ? offsets : whole;
@@ -4796,12 +4977,24 @@ static void lao__frame_uniforms_fill(const lao__view *view, const lao_frame *fra
     u->history.x = (float)(view->history < 0xffffffu ? view->history : 0xffffffu);
 }
 
+/* The window of time that a trail leaves of a set's lines. */
+static lao_window lao__window(const float *values, float time) {
+    const int trail = (int)values[LAO_SETTING_ID_trail];
+    lao_window window;
+    window.limited = trail == LAO_TRAIL_TAPER || trail == LAO_TRAIL_OPACITY;
+    window.length = values[LAO_SETTING_ID_trail_length];
+    window.period = values[LAO_SETTING_ID_period];
+    window.now = lao_trail_now(time, window.period);
+    return window;
+}
+
 /* Settings, lines and object of one set. */
 static lao_result lao__frame_set(lao_context *context, lao__view *view, const lao_set *set,
-                                 uint32_t index, int *structural) {
+                                 uint32_t index, float time, int *structural) {
     const lao__lines *lines = set ? lao__lines_get(context, set->lines) : NULL;
     const lao__object *object = set ? lao__object_get(context, set->object) : NULL;
     lao_draw *draw = &view->draws[index];
+    lao_result result;
     uint32_t i;
     if (set && set->lines.id != 0 && !lines) {
         return lao__fail(context, LAO_LOG_LINES_HANDLE, "lao_frame.sets");
@@ -4815,7 +5008,8 @@ static lao_result lao__frame_set(lao_context *context, lao__view *view, const la
         draw->chunk_count = lines->chunk_count;
     }
     draw->object = object ? &object->chunk : NULL;
-    view->buffers[index] = 0;
+    /* the first set, and one that draws nothing, clear what others draw into */
+    view->buffers[index] = index == 0 || !object ? LAO__LINE_BUFFERS : 0;
     for (i = 0; i < LAO_MAX_BUFFERS; i++) {
         if ((draw->chunks && draw->chunks[0].buffers[i]) ||
             (draw->object && draw->object->buffers[i])) {
@@ -4830,7 +5024,9 @@ static lao_result lao__frame_set(lao_context *context, lao__view *view, const la
             view->further_items[i] = object->further_items[i];
         }
     }
-    return lao__set_resolve(context, view, index, set, structural);
+    result = lao__set_resolve(context, view, index, set, structural);
+    draw->window = lao__window(view->value_rows[index], time);
+    return result;
 }
 
 static lao_result lao__frame_sets(lao_context *context, lao__view *view, const lao_frame *frame,
@@ -4841,14 +5037,14 @@ static lao_result lao__frame_sets(lao_context *context, lao__view *view, const l
     memset(view->further_items, 0, sizeof view->further_items);
     for (s = 0; s < sets && result == LAO_OK; s++) {
         result = lao__frame_set(context, view, s < frame->set_count ? &frame->sets[s] : NULL, s,
-                                structural);
+                                frame->time, structural);
     }
     return result;
 }
 
 uint32_t lao_step_draws(const lao_execution *execution, const lao_plan_step *step,
                         const lao_chunk **chunks) {
-    static const lao_chunk nothing = {{NULL}, 0};
+    static const lao_chunk nothing = {{NULL}, 0, NULL, 0};
     const lao_draw *draw = &execution->draws[step->set];
     switch (step->row->kind) {
     case LAO_PASS_DRAW_LINES:
@@ -4861,6 +5057,40 @@ uint32_t lao_step_draws(const lao_execution *execution, const lao_plan_step *ste
         *chunks = draw->object ? draw->object : &nothing;
         return 1;
     }
+}
+
+/* Does some repetition of the window reach the group? Rather too often than that rounding lets the
+   vertex stage see what is left out here. */
+static int lao__group_seen(const lao_group *group, const lao_window *window) {
+    const double now = window->now, reach = window->length, period = window->period;
+    const double begin = group->begin, end = group->end;
+    const double slack = 1e-5 * (fabs(begin) + fabs(end) + fabs(now) + reach + period);
+    const double low = begin - now - reach - slack, high = end - now + reach + slack;
+    return !(period > 0 ? period * floor(high / period) < low : low > 0 || high < 0);
+}
+
+int lao_step_range(const lao_execution *execution, const lao_plan_step *step,
+                   const lao_chunk *chunk, lao_range *range) {
+    const lao_window *window = &execution->draws[step->set].window;
+    const lao_group *groups = chunk->groups;
+    uint32_t i, g = range->next;
+    int ordered = 0;
+    for (i = 0; i < step->read_count; i++) {
+        ordered |= step->reads[i] == LAO_READ_BUFFER + LAO__BUFFER_ORDER;
+    }
+    if (!ordered || !window->limited || !groups) {
+        range->count = chunk->count;
+        return range->next++ == 0 && range->count > 0;
+    }
+    while (g < chunk->group_count && !lao__group_seen(&groups[g], window)) {
+        g++;
+    }
+    for (i = g; g < chunk->group_count && lao__group_seen(&groups[g], window); g++) {
+        range->first = groups[i].first;
+        range->count = groups[g].first + groups[g].count - range->first;
+    }
+    range->next = g;
+    return g > i;
 }
 
 static lao_result lao__frame_execute(lao_context *context, lao__view *view, const lao_frame *frame,
