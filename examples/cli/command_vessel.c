@@ -145,26 +145,6 @@ static bool read_views(const cli_options *options, view_list *out) {
     return true;
 }
 
-/* The camera turned around its up vector through the point that it looks at, by a part of a turn.
- */
-static void turn(const camera_pose *from, double part, camera_pose *out) {
-    double angle = 6.283185307179586 * part, c = cos(angle), s = sin(angle), size = 0, along = 0;
-    double axis[3], arm[3];
-    *out = *from;
-    for (int k = 0; k < 3; k++)
-        size += from->up[k] * from->up[k];
-    for (int k = 0; k < 3; k++) {
-        axis[k] = from->up[k] / sqrt(size);
-        arm[k] = from->eye[k] - from->center[k];
-        along += axis[k] * arm[k];
-    }
-    for (int k = 0; k < 3; k++) {
-        int i = (k + 1) % 3, j = (k + 2) % 3;
-        double across = axis[i] * arm[j] - axis[j] * arm[i];
-        out->eye[k] = from->center[k] + c * arm[k] + s * across + (1 - c) * along * axis[k];
-    }
-}
-
 static bool draw_all(stage *s, uint32_t flags) {
     bool ok = true;
     for (uint32_t i = 0; ok && i < s->count; i++)
@@ -182,7 +162,7 @@ static bool draw_views(stage *s, const view_list *views) {
         if (views->poses)
             s->shot.camera = views->poses[i];
         else if (i > 0)
-            turn(&first, (double)i / views->count, &s->shot.camera);
+            cli_turn(&first, (double)i / views->count, &s->shot.camera);
         cli_shot_aim(&s->trees[0].scene, &s->shot);
         if (views->count > 1)
             cli_progress_show(&progress, i, views->count);
