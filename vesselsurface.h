@@ -4277,12 +4277,13 @@ VSF_API lao_result vsf_near_exact(const vsf_host *host, const vsf_near *table, d
 #define VSF__SURFACE {"#surface_points", '>', 0}
 #define VSF__ANY {NULL, 0, 0}
 #define VSF__MESH VSF__READ("#surface_points"), VSF__READ("#surface_normals"), VSF__READ("#surface_triangles")
-#define VSF__FRONT VSF__MESH, VSF__READ("#surface_near"), VSF__READ("#surface_values"), VSF__READ("surface_measure"), VSF__READ("zbuffer"), VSF__READ("#surface_map")
+#define VSF__FRONT VSF__MESH, VSF__READ("surface_measure"), VSF__READ("surface_nearness"), VSF__READ("zbuffer"), VSF__READ("#surface_map")
 #define VSF__PLAIN(format, size) format, size, 0, 0, NULL, 0, LAO_ENCODING_PLAIN
 
 static const lao_image_row vsf__images[] = {
-    /* 1/mm, one texel per vertex */
-    {"surface_measure",  VSF__PLAIN(LAO_FORMAT_R32F, LAO_SIZE_ITEMS),   {0, 0, 0, 0}, VSF__ANY, {NULL, NULL, NULL, NULL}},
+    /* one texel per vertex: its place and measure (1/mm); its normal and nearness, x of the look-up */
+    {"surface_measure",  VSF__PLAIN(LAO_FORMAT_RGBA32F, LAO_SIZE_ITEMS), {0, 0, 0, 0}, VSF__ANY, {NULL, NULL, NULL, NULL}},
+    {"surface_nearness", VSF__PLAIN(LAO_FORMAT_RGBA32F, LAO_SIZE_ITEMS), {0, 0, 0, 0}, VSF__ANY, {NULL, NULL, NULL, NULL}},
     /* front faces, premultiplied: those composed so far, and the next one */
     {"surface_over",     VSF__PLAIN(LAO_FORMAT_RGBA16F, LAO_SIZE_FULL), {0, 0, 0, 0}, VSF__ANY, {NULL, NULL, NULL, NULL}},
     {"surface_layer",    VSF__PLAIN(LAO_FORMAT_RGBA16F, LAO_SIZE_FULL), {0, 0, 0, 0}, {"layers", '>', 0}, {NULL, NULL, NULL, NULL}},
@@ -4308,7 +4309,7 @@ static const lao_pass_row vsf__passes[] = {
     {"surface_back", LAO_PASS_DRAW_MESH, "surface_mesh", 0, LAO_STAGE_SHADE, LAO_SCOPE_PER_SET, LAO_REPEAT_NONE, NULL, LAO_BLEND_NONE, LAO_DEPTH_NEARER, LAO_CULL_FRONT, {VSF__SURFACE},
      {VSF__KEEP("shaded"), VSF__KEEP("zbuffer")}, {VSF__MESH}},
     {"surface_measure", LAO_PASS_FULLSCREEN, "surface_measure", 0, LAO_STAGE_COMPOSE, LAO_SCOPE_PER_SET, LAO_REPEAT_NONE, NULL, LAO_BLEND_NONE, LAO_DEPTH_NONE, LAO_CULL_NONE, {VSF__SURFACE},
-     {VSF__WRITE("surface_measure")}, {VSF__READ("#surface_points"), VSF__READ("#surface_normals"), VSF__READ("#surface_rings")}},
+     {VSF__WRITE("surface_measure"), VSF__WRITE("surface_nearness")}, {VSF__READ("#surface_points"), VSF__READ("#surface_normals"), VSF__READ("#surface_rings"), VSF__READ("#surface_near"), VSF__READ("#surface_values")}},
     /* the nearest front face, then peel by peel those behind it, and all of them over the scene */
     {"surface_front", LAO_PASS_DRAW_MESH, "surface_mesh", 1, LAO_STAGE_COMPOSE, LAO_SCOPE_PER_SET, LAO_REPEAT_NONE, NULL, LAO_BLEND_NONE, LAO_DEPTH_NEARER, LAO_CULL_BACK, {VSF__SURFACE},
      {VSF__CLEAR("surface_over"), VSF__CLEAR("surface_position"), VSF__CLEAR("surface_normal"), VSF__CLEAR("surface_lut"), VSF__CLEAR("surface_z")}, {VSF__FRONT}},
