@@ -51,7 +51,7 @@ static void to_picture(const float *data, const lao_read_info *info, const float
                   : c < info->channels ? data[i / 4 * info->channels + c]
                                        : range[0];
         v = (v - range[0]) / (range[1] - range[0]);
-        out[i] = c == 3 ? 255 : (uint8_t)(255 * (v > 0 ? fminf(v, 1) : 0) + 0.5f);
+        out[i] = c == 3 ? 255 : (uint8_t)roundf(255 * (v > 0 ? fminf(v, 1) : 0));
     }
 }
 

@@ -237,7 +237,9 @@ static bool draw(stage *s, const view_list *views) {
                         options->fps ? options->fps : 25))
         return false;
     s->video = &video;
-    return cli_video_close(&video, draw_views(s, views));
+    bool ok = cli_video_close(&video, draw_views(s, views));
+    s->video = NULL;
+    return ok;
 }
 
 bool cli_write_camera(const cli_options *options, const camera_pose *camera) {

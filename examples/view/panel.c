@@ -22,9 +22,8 @@ static void open_line(view *v) {
     static const uint32_t most = 256;
     const char *words[256];
     uint32_t count = 0;
-    char *text = v->words, *to = text, copy[sizeof v->words];
+    char copy[sizeof v->words], *text = copy, *to = copy;
     memcpy(copy, v->words, sizeof copy);
-    to = text = copy;
     while (*text && count < most) {
         char quote = 0;
         text += strspn(text, " ");

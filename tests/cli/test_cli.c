@@ -437,6 +437,8 @@ static void test_videos(void **state) {
          path[4096];
     struct stat status;
     (void)state;
+    assert_non_null(before);
+    assert_non_null(here);
     mkdir("bin", 0755);
     remove("bin/ffmpeg"); /* of a run that was stopped */
     assert_true(snprintf(path, sizeof path, "%s/bin", here) < (int)sizeof path);

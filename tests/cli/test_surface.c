@@ -44,9 +44,9 @@ static void write_tube(const char *path, int inward, double scale) {
     for (int j = 0; j < LONG; j++) {
         for (int i = 0; i < ROUND; i++) {
             int a = j * ROUND + i + 1, b = j * ROUND + (i + 1) % ROUND + 1;
-            fprintf(file, inward ? "f %d %d %d\nf %d %d %d\n" : "f %d %d %d\nf %d %d %d\n", a,
-                    inward ? b + ROUND : b, inward ? b : b + ROUND, a,
-                    inward ? a + ROUND : b + ROUND, inward ? b + ROUND : a + ROUND);
+            fprintf(file, "f %d %d %d\nf %d %d %d\n", a, inward ? b + ROUND : b,
+                    inward ? b : b + ROUND, a, inward ? a + ROUND : b + ROUND,
+                    inward ? b + ROUND : a + ROUND);
         }
     }
     assert_int_equal(fclose(file), 0);

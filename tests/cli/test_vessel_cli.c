@@ -342,8 +342,8 @@ static void test_looks(void **state) {
         "--set layout_ph=0 --set width=2",
         "--set field_shadow=on",
         "--subtract sphere:8,18,-1100,4 --shape-color nearest",
-        "--union ellipsoid:0,10,-1100,9,14,9 --subtract "
-        "sphere:0,10,-1090,9 --union tree --shape-color #804020",
+        ("--union ellipsoid:0,10,-1100,9,14,9 --subtract "
+         "sphere:0,10,-1090,9 --union tree --shape-color #804020"),
         "--layout-weight near --target 0,0,-1100,1 --layout n.json"};
     (void)state;
     for (size_t i = 0; i < sizeof looks / sizeof *looks; i++)
