@@ -50,11 +50,12 @@ static void fill_in_c(const sdv_pull_push_settings *s, uint32_t width, uint32_t 
 }
 
 static void check(const sdv_pull_push_settings *s, uint32_t kind, uint32_t width, uint32_t height) {
-    static float texels[4 * MOST], filled[4 * MOST];
+    static float texels[4 * MOST], filled[4 * MOST], nothing[4 * MOST];
     const void *settings[1] = {s};
     lao_settings lines;
-    render_image image = {"pull_push_image", 0, width, height, LAO_FORMAT_RGBA32F,
-                          (uint8_t *)texels};
+    const render_image images[2] = {
+        {"pull_push_image", 0, width, height, LAO_FORMAT_RGBA32F, (uint8_t *)texels},
+        {"pull_push_result", 0, width, height, LAO_FORMAT_RGBA32F, (uint8_t *)nothing}};
     render_shot shot;
     memset(&shot, 0, sizeof shot);
     memset(&lines, 0, sizeof lines);
@@ -66,8 +67,8 @@ static void check(const sdv_pull_push_settings *s, uint32_t kind, uint32_t width
     shot.set_count = 1;
     shot.settings[0] = &lines;
     shot.module_settings[0] = settings;
-    shot.imports = &image;
-    shot.import_count = 1;
+    shot.imports = images;
+    shot.import_count = 2;
     shot.sphere[3] = 1;
     shot.camera = render_camera(0, 0, 1, 5);
     render_perspective(&shot.camera, 40, (double)width / height, 1, 10);
@@ -80,6 +81,7 @@ static void check(const sdv_pull_push_settings *s, uint32_t kind, uint32_t width
         assert_non_null(ours);
         assert_int_equal(ours->width * ours->height, width * height);
         assert_memory_equal(ours->data, filled, width * height * 4 * sizeof *filled);
+        assert_memory_equal(result.import_after.data, filled, width * height * 4 * sizeof *filled);
         render_free(&result);
     }
 }
