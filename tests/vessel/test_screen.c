@@ -602,7 +602,8 @@ static void void_reach(void **state) {
 static void drawn_depths(void **state) {
     (void)state;
     for (int kind = 0; kind < 4; kind++) {
-        const double n = 2, f = 300, reverse = kind % 2;
+        const double n = 2, f = 300;
+        const bool reverse = kind % 2 == 1;
         lao_m4 p;
         memset(&p, 0, sizeof p);
         if (kind < 2) { /* perspective */
