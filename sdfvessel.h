@@ -294,6 +294,22 @@ typedef struct sdv_svg_desc {
 SDV_API int sdv_layout_write_svg(const sdv_reduced *reduced, const sdv_layout *layout,
                                  const sdv_svg_desc *desc, const sdv_writer *writer);
 
+typedef struct sdv_drawing_desc {
+    float width, height; /* mm; 0: 200 x 100, radial 150 x 150 */
+    uint32_t radial;     /* non-zero: angle h, radius 1 - s */
+    float thickness;     /* mm, full, of the thinnest edge; 0: what suits the number of edges */
+} sdv_drawing_desc;
+/* The layout as a tree of its own, to be drawn like any tree into a view of its own: an
+   orthographic camera above the plane z = 0 sees it between (0, 0) and (width, height), the root on
+   top. Its node k is node k of the tree, on the edge of its reduced node by its way along the
+   vessel; from tree->node_count on come the extra nodes (sdv_reduced.ids), so that colours of nodes
+   serve both. Edges are the thicker the wider their vessels, by the root of the radius, up to four
+   times. Loops are cut. `desc` NULL: defaults. Free with sdv_tree_free. Fails with NULL_ARGUMENT,
+   MEMORY. */
+SDV_API lao_result sdv_layout_tree(const sdv_host *host, const sdv_tree *tree,
+                                   const sdv_reduced *reduced, const sdv_layout *layout,
+                                   const sdv_drawing_desc *desc, sdv_tree *drawing);
+
 /* ------------------------------------------------------------------------------------------------
  * the distance field on a grid */
 
@@ -520,6 +536,8 @@ SDV_API lao_result sdv_pull_push(const sdv_host *host, const sdv_pull_push_desc 
       "background)")                                                                               \
     X(void_exponent, INT, 1, 1000, 25, 1, "", "",                                                  \
       "how little the void's depth takes over from afar (k of L19)")                               \
+    X(void_reach, FLOAT, 0, 1000, 6, 0, "%", "",                                                   \
+      "how far from a vessel the void's ink ends, of the scene's diameter; 0: nowhere")            \
     X(isolines, INT, 0, 1000, 30, 0, "", "", "lines of depth of the chromadepth; 0: none")         \
     X(ink_step, FLOAT, 0.001f, 1, 0.1f, 0, "", "",                                                 \
       "how much of what a new solution changes of a place's ink shows in a frame; 1: all at once") \
@@ -623,11 +641,14 @@ SDV_API lao_result sdv_object_move(const sdv_host *host, const sdv_tree *tree,
    Fails with NULL_ARGUMENT, MESH, MEMORY. */
 SDV_API lao_result sdv_object_mesh(const sdv_host *host, const sdv_mesh_desc *desc,
                                    sdv_object *object);
-/* Describes a surface that the host has drawn itself. Each frame names three images of its own
-   (lao_frame.imports; as large as the view, `supersampling` 1): "vessel_position" (RGBA32F; world,
-   mm; w 0 where there is a surface, -1 elsewhere), "vessel_normal" (RGBA32F; world, unit, towards
-   the viewer) and "vessel_color" (RGBA8); with guide=own "vessel_direction" (RGBA32F; world; w: how
-   sure, 0 .. 1) too. bounds: lower and upper corner (6 floats), mm. Fails with NULL_ARGUMENT. */
+/* Describes a surface that the host has drawn itself. Each frame names images of its own
+   (lao_frame.imports; as large as the view times `supersampling`, row 0 at the bottom):
+   "vessel_position" (RGBA32F; world, mm; w 0 where there is a surface, -1 elsewhere), or in its
+   place "vessel_drawn_depth" (x: a depth buffer's value, 0 .. 1 by lao_frame.camera; nothing where
+   it is 0 or 1). (Optional) "vessel_normal" (RGBA32F; world, unit, towards the viewer; w: beside
+   the surface mm from the ray to it, for void_reach) and "vessel_color" (RGBA8): else normals come
+   from neighbouring places, and it is white. With guide=own "vessel_direction" (RGBA32F; world; w:
+   how sure, 0 .. 1). bounds: lower and upper corner (6 floats), mm. Fails with NULL_ARGUMENT. */
 SDV_API lao_result sdv_object_drawn(const sdv_host *host, const float *bounds, sdv_object *object);
 /* Gives it a texture of ink for the style `pattern`: a picture of size x size grey values (1 ..
    SDV_MOST_PATTERN; smaller: inked first), which lies in half a period of (u, v) and is mirrored
@@ -1573,11 +1594,11 @@ LAO_FN float sdv_outline_width(float width, float unit, float zoom) {
     LAO_EXACT float mm = width / zoom;
     return unit > 0.5f ? width : mm;
 }
-/* How near to a vessel a ray must pass for anything to be drawn of it, mm. `shadow`, `halo`: % of
-   the diameter. */
+/* How near to a vessel a ray must pass for anything to be drawn of it, mm. `shadow`, `halo`, `ink`:
+   % of the diameter. */
 LAO_FN float sdv_near_miss_reach(float silhouette, float contour, float shadow, float halo,
-                                 float diameter) {
-    LAO_EXACT float widest = 0.01f * lao_max(shadow, halo) * diameter;
+                                 float ink, float diameter) {
+    LAO_EXACT float widest = 0.01f * lao_max(lao_max(shadow, halo), ink) * diameter;
     return lao_max(lao_max(silhouette, contour), widest);
 }
 /* Place of p along a cone's axis, 0 at a, 1 at b. */
@@ -1675,6 +1696,14 @@ LAO_FN float sdv_empty_depth(lao_v4 depth) {
 LAO_FN float sdv_depth_of(lao_m4 view, lao_v3 p) {
     lao_v3 q = lao_transform(view, p);
     return -q.z;
+}
+/* Depth before the camera, mm, of a depth buffer's value: the inverse of the projection to 0 .. 1;
+   SDV_FAR where the buffer holds either end, so nothing. */
+LAO_FN float sdv_drawn_depth(lao_m4 projection, float value) {
+    LAO_EXACT float over = projection.w.z - value * projection.w.w;
+    LAO_EXACT float under = projection.z.z - value * projection.z.w;
+    LAO_EXACT float z = over / under;
+    return value > 0.0f && value < 1.0f && lao_abs(z) < SDV_FAR ? z : SDV_FAR;
 }
 /* The place of the world at that depth of a pixel. */
 LAO_FN lao_v3 sdv_depth_place(lao_m4 world, lao_v2 slope, float depth, float orthographic) {
@@ -2128,6 +2157,13 @@ LAO_FN float sdv_ink_rest(float before, float now, float step) {
 LAO_FN float sdv_style_tone(float facing, float ambient, float diffuse, float light) {
     LAO_EXACT float r = (ambient + diffuse * lao_max(facing, 0.0f)) * light;
     return lao_clamp01(r);
+}
+/* What the void keeps of its ink where the ray passes a vessel at d_min mm: all beside it, nothing
+   from `reach` mm on, and all everywhere without a reach. */
+LAO_FN float sdv_void_share(float d_min, float reach) {
+    LAO_EXACT float near_ = lao_clamp01(1.0f - lao_max(d_min, 0.0f) / lao_max(reach, 1.0e-6f));
+    LAO_EXACT float r = near_ * near_ * (3.0f - 2.0f * near_);
+    return reach > 0.0f ? r : 1.0f;
 }
 /* Red near, blue far (METHODS 6.1, RSH06). */
 LAO_FN lao_v3 sdv_chromadepth(float depth) {
@@ -3361,6 +3397,126 @@ SDV_API int sdv_layout_write_svg(const sdv_reduced *reduced, const sdv_layout *l
         }
     }
     return stop ? stop : sdv__print(writer, "</g>\n</svg>\n");
+}
+
+/* ---- as a tree */
+typedef struct sdv__drawing {
+    const sdv_tree *tree;
+    const sdv_reduced *reduced;
+    const sdv_layout *layout;
+    sdv_svg_desc page;
+    float thin, widest; /* half thickness of the thinnest edge; greatest radius of a vessel, mm */
+    float *positions, *radii;
+    sdv_segment *segments;
+    uint32_t node_count, segment_count;
+} sdv__drawing;
+
+static void sdv__drawing_put(sdv__drawing *d, uint32_t id, uint32_t node, lao_v2 at) {
+    float part = d->widest > 0 ? lao_sqrt(d->tree->nodes[node].w / d->widest) : 0.0f;
+    d->positions[3 * (size_t)id] = at.x;
+    d->positions[3 * (size_t)id + 1] = d->page.height - at.y;
+    d->positions[3 * (size_t)id + 2] = 0.0f;
+    d->radii[id] = d->thin * (1.0f + 3.0f * part);
+}
+static void sdv__drawing_join(sdv__drawing *d, uint32_t parent, uint32_t child) {
+    d->segments[d->segment_count].parent = parent;
+    d->segments[d->segment_count++].child = child;
+}
+static float sdv__way(const sdv_tree *t, uint32_t node) {
+    const lao_v4 *a = t->nodes + node, *b = t->nodes + t->parents[node];
+    lao_v3 way = lao_v3_make(a->x - b->x, a->y - b->y, a->z - b->z);
+    return lao_sqrt(lao_v3_dot(way, way));
+}
+/* The edge above a reduced node, from below, with all nodes of the tree on it. */
+static void sdv__drawing_edge(sdv__drawing *d, uint32_t k) {
+    const sdv_reduced *r = d->reduced;
+    const sdv_tree *t = d->tree;
+    uint32_t up = r->parents[k], node = r->nodes[k], end, count = 0, i;
+    lao_v2 low = sdv__layout_place(d->layout, &d->page, k), top;
+    float way = 0.0f, whole = 0.0f;
+    if (up == SDV_NONE || r->ids[k] >= t->node_count) {
+        sdv__drawing_put(d, r->ids[k], node, low);
+        if (up != SDV_NONE) {
+            sdv__drawing_join(d, r->ids[up], r->ids[k]);
+        }
+        return;
+    }
+    top = sdv__layout_place(d->layout, &d->page, up);
+    end = r->nodes[up];
+    for (; node != end; node = t->parents[node]) {
+        whole += sdv__way(t, node);
+        count++;
+    }
+    node = r->nodes[k];
+    for (i = 0; i < count; i++, node = t->parents[node]) {
+        float at = whole > 0.0f ? way / whole : (float)i / (float)count;
+        sdv__drawing_put(d, node, node,
+                         lao_v2_make(low.x + at * (top.x - low.x), low.y + at * (top.y - low.y)));
+        sdv__drawing_join(d, t->parents[node] == end ? r->ids[up] : t->parents[node], node);
+        way += sdv__way(t, node);
+    }
+}
+/* The thinnest edge is a 200th of the page, less where edges are many, but never less than 2/5 of
+   that. */
+static void sdv__drawing_page(sdv__drawing *d, const sdv_drawing_desc *desc) {
+    sdv_drawing_desc none = {0, 0, 0, 0};
+    float unit, fits;
+    uint32_t i;
+    desc = desc ? desc : &none;
+    d->page.radial = desc->radial;
+    d->page.width = desc->width > 0 ? desc->width : desc->radial ? 150.0f : 200.0f;
+    d->page.height = desc->height > 0 ? desc->height : desc->radial ? 150.0f : 100.0f;
+    unit = lao_min(d->page.width, d->page.height) / 200.0f;
+    fits = 0.35f * d->page.width / (float)d->reduced->node_count;
+    d->thin = desc->thickness > 0 ? 0.5f * desc->thickness
+                                  : lao_min(0.5f * unit, lao_max(fits, 0.2f * unit));
+    for (i = 0; i < d->tree->node_count; i++) {
+        d->widest = lao_max(d->widest, d->tree->nodes[i].w);
+    }
+}
+SDV_API lao_result sdv_layout_tree(const sdv_host *host, const sdv_tree *tree,
+                                   const sdv_reduced *reduced, const sdv_layout *layout,
+                                   const sdv_drawing_desc *desc, sdv_tree *drawing) {
+    lao_allocator a = sdv__allocator(host);
+    lao_result result = LAO_ERROR_OUT_OF_MEMORY;
+    sdv__drawing d;
+    sdv_tree_desc out;
+    sdv_host silent;
+    uint32_t k;
+    if (!tree || !reduced || !layout || !drawing || !tree->memory || !reduced->memory ||
+        !layout->memory) {
+        return sdv__fail(host, SDV_LOG_NULL_ARGUMENT, "sdv_layout_tree");
+    }
+    memset(&d, 0, sizeof d);
+    memset(&out, 0, sizeof out);
+    memset(&silent, 0, sizeof silent); /* edges of length 0 are none of the host's business */
+    silent.allocator = a;
+    d.tree = tree;
+    d.reduced = reduced;
+    d.layout = layout;
+    d.node_count = tree->node_count;
+    for (k = 0; k < reduced->node_count; k++) {
+        d.node_count += reduced->ids[k] >= tree->node_count;
+    }
+    d.positions = (float *)sdv__take(&a, 3 * (uint64_t)d.node_count, sizeof *d.positions);
+    d.radii = (float *)sdv__take(&a, d.node_count, sizeof *d.radii);
+    d.segments = (sdv_segment *)sdv__take(&a, d.node_count, sizeof *d.segments);
+    if (d.positions && d.radii && d.segments) {
+        sdv__drawing_page(&d, desc);
+        for (k = 0; k < reduced->node_count; k++) {
+            sdv__drawing_edge(&d, k);
+        }
+        out.node_count = d.node_count;
+        out.positions = d.positions;
+        out.radii = d.radii;
+        out.segment_count = d.segment_count;
+        out.segments = d.segments;
+        result = sdv_tree_build(&silent, &out, drawing);
+    }
+    sdv__give(&a, d.positions);
+    sdv__give(&a, d.radii);
+    sdv__give(&a, d.segments);
+    return result == LAO_OK ? LAO_OK : sdv__fail(host, SDV_LOG_MEMORY, "drawing a layout");
 }
 
 /* ================================================================================================
@@ -5465,6 +5621,7 @@ SDV_API lao_result sdv_pull_push(const sdv_host *host, const sdv_pull_push_desc 
 #define SDV__TREE {"#vessel_cones", '>', 0}, {"#vessel_shapes", '=', 0}
 #define SDV__SHAPES {"#vessel_cones", '>', 0}, {"#vessel_shapes", '>', 0}
 #define SDV__SEEN {"#vessel_box", '>', 0}, {"#vessel_cones", '=', 0}
+#define SDV__DRAWN {SDV__SEEN, {"#vessel_triangles", '=', 0}}
 #define SDV__WITH_TREE {SDV__TREE}
 #define SDV__WITH_SHAPES {SDV__SHAPES}
 /* sdv_object_make_tree: the object has no cells of its own */
@@ -5507,6 +5664,7 @@ static const lao_image_row sdv__images[] = {
     {"vessel_ray",      LAO_FORMAT_RGBA32F, LAO_SIZE_FULL, 0, 0, NULL, 0, LAO_ENCODING_PLAIN, {0, 0, 0, 0},  {NULL, 0, 0}, {NULL, NULL, NULL, NULL}},
     {"vessel_color",    LAO_FORMAT_RGBA8,   LAO_SIZE_FULL, 0, 0, NULL, 0, LAO_ENCODING_PLAIN, {0, 0, 0, 0},  {NULL, 0, 0}, {NULL, NULL, NULL, NULL}},
     {"vessel_direction", LAO_FORMAT_RGBA32F, LAO_SIZE_FULL, 0, 0, NULL, 0, LAO_ENCODING_PLAIN, {0, 0, 0, 0}, {"guide", '>', 0}, {NULL, NULL, NULL, NULL}},
+    {"vessel_drawn_depth", LAO_FORMAT_HOST, LAO_SIZE_FULL, 0, 0, NULL, LAO_IMAGE_IMPORT, LAO_ENCODING_PLAIN, {0, 0, 0, 0}, {NULL, 0, 0}, {NULL, NULL, NULL, NULL}},
     {"vessel_z",        LAO_FORMAT_D32F,    LAO_SIZE_FULL, 0, 0, NULL, 0, LAO_ENCODING_PLAIN, {1, 0, 0, 0},  {NULL, 0, 0}, {NULL, NULL, NULL, NULL}},
     /* where there is a parameterization: of pyramids, levels down to one texel; what each holds stands in its shader */
     {"vessel_depth", LAO_FORMAT_RGBA32F, LAO_SIZE_FULL, 0, 0, "*", 0, LAO_ENCODING_PLAIN, {0, 0, 0, 0}, SDV__BACKGROUND, {NULL, NULL, NULL, NULL}},
@@ -5593,6 +5751,16 @@ static const lao_pass_row sdv__passes[] = {
     {"vessel_mesh", LAO_PASS_DRAW_MESH, "vessel_mesh", 0, LAO_STAGE_DRAW, LAO_SCOPE_PER_SET, LAO_REPEAT_NONE, NULL, LAO_BLEND_NONE, LAO_DEPTH_NEARER, LAO_CULL_NONE, {{"#vessel_triangles", '>', 0}},
      {SDV__CLEAR("vessel_position"), SDV__CLEAR("vessel_normal"), SDV__CLEAR("vessel_color"), SDV__CLEAR("vessel_direction"), SDV__CLEAR("vessel_z")},
      {SDV__READ("#vessel_vertices"), SDV__READ("#vessel_triangles"), SDV__READ("#vessel_colors")}},
+    /* of a surface that the host drew what it does not bring itself */
+    {"vessel_drawn_place", LAO_PASS_FULLSCREEN, "vessel_drawn", 0, LAO_STAGE_DRAW, LAO_SCOPE_PER_SET, LAO_REPEAT_NONE, NULL, LAO_BLEND_NONE, LAO_DEPTH_NONE, LAO_CULL_NONE, SDV__DRAWN,
+     {SDV__WRITE("vessel_position")},
+     {SDV__READ("vessel_drawn_depth")}},
+    {"vessel_drawn_normal", LAO_PASS_FULLSCREEN, "vessel_drawn", 1, LAO_STAGE_DRAW, LAO_SCOPE_PER_SET, LAO_REPEAT_NONE, NULL, LAO_BLEND_NONE, LAO_DEPTH_NONE, LAO_CULL_NONE, SDV__DRAWN,
+     {SDV__WRITE("vessel_normal")},
+     {SDV__READ("vessel_position")}},
+    {"vessel_drawn_color", LAO_PASS_FULLSCREEN, "vessel_drawn", 2, LAO_STAGE_DRAW, LAO_SCOPE_PER_SET, LAO_REPEAT_NONE, NULL, LAO_BLEND_NONE, LAO_DEPTH_NONE, LAO_CULL_NONE, SDV__DRAWN,
+     {SDV__WRITE("vessel_color")},
+     {SDV__READ("vessel_position")}},
     /* the void: depth pulled up and pushed down, then a place and a normal for every pixel (L19 3.4) */
     {"vessel_depth", LAO_PASS_FULLSCREEN, "vessel_depth", 0, LAO_STAGE_SHADE, LAO_SCOPE_PER_SET, LAO_REPEAT_NONE, NULL, LAO_BLEND_NONE, LAO_DEPTH_NONE, LAO_CULL_NONE, SDV__WITH_BACKGROUND,
      {SDV__WRITE("vessel_depth")},
@@ -5647,25 +5815,22 @@ static const lao_pass_row sdv__passes[] = {
     /* strokes and dots, where phases changed faded over */
     {"vessel_ink", LAO_PASS_FULLSCREEN, "vessel_ink", 0, LAO_STAGE_SHADE, LAO_SCOPE_PER_SET, LAO_REPEAT_NONE, NULL, LAO_BLEND_NONE, LAO_DEPTH_NONE, LAO_CULL_NONE, {SDV__TREE, SDV__PARAMETERIZED},
      {SDV__WRITE("vessel_ink")},
-     {SDV__READ("vessel_position"), SDV__READ("vessel_normal"), SDV__READ("vessel_ray"),
+     {SDV__READ("vessel_surface"), SDV__READ("vessel_bgnormal"), SDV__READ("vessel_normal"), SDV__READ("vessel_ray"),
       SDV__READ("#vessel_box"), SDV__READ("#vessel_cells"), SDV__READ("#vessel_ids"), SDV__READ("#vessel_cones"),
-      SDV__READ("#vessel_shapes"), SDV__READ("#vessel_fields"), SDV__READ("vessel_uv"), SDV__READ("vessel_surface"),
-      SDV__READ("vessel_bgnormal"), SDV__READ("vessel_along"), SDV__READ("vessel_across"), SDV__READ("vessel_recalled"), SDV__READ("#vessel_pattern"), SDV__READ("#vessel_colors"),
-      SDV__READ("vessel_grid"), SDV__READ("vessel_lists")}},
+      SDV__READ("#vessel_shapes"), SDV__READ("#vessel_fields"), SDV__READ("vessel_uv"), SDV__READ("vessel_recalled"),
+      SDV__READ("#vessel_pattern"), SDV__READ("#vessel_colors"), SDV__READ("vessel_grid"), SDV__READ("vessel_lists")}},
     {"vessel_ink_cut", LAO_PASS_FULLSCREEN, "vessel_ink", 1, LAO_STAGE_SHADE, LAO_SCOPE_PER_SET, LAO_REPEAT_NONE, NULL, LAO_BLEND_NONE, LAO_DEPTH_NONE, LAO_CULL_NONE, {SDV__SHAPES, SDV__PARAMETERIZED},
      {SDV__WRITE("vessel_ink")},
-     {SDV__READ("vessel_position"), SDV__READ("vessel_normal"), SDV__READ("vessel_ray"),
+     {SDV__READ("vessel_surface"), SDV__READ("vessel_bgnormal"), SDV__READ("vessel_normal"), SDV__READ("vessel_ray"),
       SDV__READ("#vessel_box"), SDV__READ("#vessel_cells"), SDV__READ("#vessel_ids"), SDV__READ("#vessel_cones"),
-      SDV__READ("#vessel_shapes"), SDV__READ("#vessel_fields"), SDV__READ("vessel_uv"), SDV__READ("vessel_surface"),
-      SDV__READ("vessel_bgnormal"), SDV__READ("vessel_along"), SDV__READ("vessel_across"), SDV__READ("vessel_recalled"), SDV__READ("#vessel_pattern"), SDV__READ("#vessel_colors"),
-      SDV__READ("vessel_grid"), SDV__READ("vessel_lists")}},
+      SDV__READ("#vessel_shapes"), SDV__READ("#vessel_fields"), SDV__READ("vessel_uv"), SDV__READ("vessel_recalled"),
+      SDV__READ("#vessel_pattern"), SDV__READ("#vessel_colors"), SDV__READ("vessel_grid"), SDV__READ("vessel_lists")}},
     {"vessel_ink_seen", LAO_PASS_FULLSCREEN, "vessel_ink", 2, LAO_STAGE_SHADE, LAO_SCOPE_PER_SET, LAO_REPEAT_NONE, NULL, LAO_BLEND_NONE, LAO_DEPTH_NONE, LAO_CULL_NONE, {SDV__SEEN, SDV__PARAMETERIZED},
      {SDV__WRITE("vessel_ink")},
-     {SDV__READ("vessel_position"), SDV__READ("vessel_normal"), SDV__READ("vessel_normal"),
+     {SDV__READ("vessel_surface"), SDV__READ("vessel_bgnormal"), SDV__READ("vessel_normal"), SDV__READ("vessel_normal"),
       SDV__READ("#vessel_box"), SDV__READ("#vessel_cells"), SDV__READ("#vessel_ids"), SDV__READ("#vessel_cones"),
-      SDV__READ("#vessel_shapes"), SDV__READ("#vessel_fields"), SDV__READ("vessel_uv"), SDV__READ("vessel_surface"),
-      SDV__READ("vessel_bgnormal"), SDV__READ("vessel_along"), SDV__READ("vessel_across"), SDV__READ("vessel_recalled"), SDV__READ("#vessel_pattern"), SDV__READ("#vessel_colors"),
-      SDV__READ("vessel_normal"), SDV__READ("vessel_normal")}},
+      SDV__READ("#vessel_shapes"), SDV__READ("#vessel_fields"), SDV__READ("vessel_uv"), SDV__READ("vessel_recalled"),
+      SDV__READ("#vessel_pattern"), SDV__READ("#vessel_colors"), SDV__READ("vessel_normal"), SDV__READ("vessel_normal")}},
     {"vessel_shade", LAO_PASS_FULLSCREEN, "vessel_shade", 0, LAO_STAGE_SHADE, LAO_SCOPE_PER_SET, LAO_REPEAT_NONE, NULL, LAO_BLEND_NONE, LAO_DEPTH_NEARER, LAO_CULL_NONE, SDV__WITH_TREE,
      {SDV__KEEP("shaded"), SDV__KEEP("zbuffer")},
      {SDV__READ("vessel_position"), SDV__READ("vessel_normal"), SDV__READ("vessel_ray"), SDV__READ("#vessel_colors"),

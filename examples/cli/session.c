@@ -152,8 +152,8 @@ bool cli_session_start(cli_session *session, const lao_backend *functions, const
     desc.backend = functions;
     desc.logger.log = on_log;
     desc.logger.user = session;
-    desc.modules = &scene->module;
-    desc.module_count = scene->module ? 1 : 0;
+    desc.modules = scene->modules;
+    desc.module_count = scene->module_count;
     size.width = shot->width + 2 * shot->margin;
     size.height = shot->height + 2 * shot->margin;
     session->margin = shot->margin;

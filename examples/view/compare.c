@@ -134,7 +134,7 @@ static void take_settings(side *s, const wish *w) {
         }
         give_one(s, w, i);
         s->session.sets[i].settings = &s->settings[i];
-        if (scene->module && scene->sets[i].module_settings[0] &&
+        if (scene->module_count && scene->sets[i].module_settings[0] &&
             scene->sets[i].module_settings[0] == shared_settings(scene))
             s->session.sets[i].module_settings = s->modules;
     }
@@ -280,9 +280,9 @@ void compare_ask(compare *c, const cli_shot *shot, const compare_look looks[2], 
         strncpy(w->image, image, sizeof w->image - 1);
         for (uint32_t s = 0; s < scene->count; s++)
             w->sets[s] = scene->sets[s].settings;
-        if (scene->module && shared_settings(scene))
+        if (scene->module_count && shared_settings(scene))
             memcpy(w->module, shared_settings(scene),
-                   sizeof(uint64_t) + scene->module->setting_count * sizeof(float));
+                   sizeof(uint64_t) + scene->modules[0]->setting_count * sizeof(float));
     }
     pthread_cond_broadcast(&c->wake);
     pthread_mutex_unlock(&c->lock);

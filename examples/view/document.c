@@ -306,10 +306,10 @@ static bool load(document *doc) {
     }
     if (doc->command == CLI_VESSEL) {
         doc->scene = &doc->tree.scene;
-        return cli_tree_load(&doc->options, 0, &doc->tree) && cli_tree_prepare(&doc->tree);
+        return cli_tree_load(&doc->options, NULL, 0, &doc->tree) && cli_tree_prepare(&doc->tree);
     }
     doc->scene = &doc->wall.scene;
-    if (!cli_wall_load(&doc->options, &doc->wall))
+    if (!cli_wall_load(&doc->options, NULL, &doc->wall))
         return false;
     if (doc->wall.lit) { /* both are one source's, but for what the surface has not */
         doc->scene->sets[0].settings = doc->scene->sets[1].settings;

@@ -16,10 +16,11 @@ void compare_end(view *v) {
 
 /* The i-th image of the frame graph that a dump would have, or the picture. */
 static const lao_image_row *image_row(const view *v, uint32_t i) {
-    const lao_module *modules[2] = {lao_lines_module(), v->doc->scene->module};
-    for (int m = 0; m < 2 && modules[m]; m++) {
-        for (uint32_t k = 0; k < modules[m]->image_count; k++) {
-            const lao_image_row *row = &modules[m]->images[k];
+    const cli_scene *scene = v->doc->scene;
+    for (uint32_t m = 0; m <= scene->module_count; m++) {
+        const lao_module *module = m ? scene->modules[m - 1] : lao_lines_module();
+        for (uint32_t k = 0; k < module->image_count; k++) {
+            const lao_image_row *row = &module->images[k];
             if (row->format != LAO_FORMAT_HOST && !(row->flags & LAO_IMAGE_IMPORT) &&
                 row->format != LAO_FORMAT_D32F && i-- == 0)
                 return row;
