@@ -250,7 +250,7 @@ static void on_scroll(GLFWwindow *glfw, double x, double y) {
 /* ---- files and window -------------------------------------------------------------------- */
 
 static void on_drop(GLFWwindow *glfw, int count, const char **paths) {
-    loader_start(of(glfw)->loader, paths, (uint32_t)count);
+    stage_add(of(glfw), paths, (uint32_t)count);
 }
 
 static void on_resize(GLFWwindow *glfw, int width, int height) {

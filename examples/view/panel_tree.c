@@ -49,7 +49,7 @@ static void draw(const ui_area *a, const cli_tree *tree) {
 }
 
 void panel_tree(view *v) {
-    const cli_tree *tree = &v->doc->tree;
+    const cli_tree *tree = picked_tree(v->doc, &v->picked);
     float width, at[2];
     char text[128];
     ui_text_dim(
@@ -65,7 +65,7 @@ void panel_tree(view *v) {
         snprintf(text, sizeof text, "node %u", tree->reduced.nodes[over]);
         ui_help(text);
         if (a.pressed && v->picked.point != tree->reduced.nodes[over]) {
-            pick_node(v->doc, tree->reduced.nodes[over], &v->picked);
+            pick_node(v->doc, tree, tree->reduced.nodes[over], &v->picked);
             stage_select(v);
             trace(v, "node %u", v->picked.point);
         }

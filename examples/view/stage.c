@@ -70,7 +70,7 @@ bool stage_open(view *v, document *doc) {
     v->shot = v->fitted = doc->shot;
     find_bounds(v);
     v->dirty = true;
-    v->unfitted = !doc->options.camera;
+    v->unfitted = !doc->options.camera || doc->added;
     double first, length;
     player_range(v, &first, &length);
     v->player.speed = length > 0 ? length / 4 : 100;
@@ -82,18 +82,38 @@ bool stage_open(view *v, document *doc) {
     return false;
 }
 
-void stage_reload(view *v) {
-    char *words = document_words(v->doc, &v->shot);
-    const char *list[512];
-    uint32_t count = 0;
-    for (char *at = words; at && *at && count < 512; at += strcspn(at, "\n")) {
+/* Words, one a line, which are freed, and files behind them. */
+static void open_text(view *v, char *words, const char *const *files, uint32_t count) {
+    enum { MOST = 512 };
+    const char *list[MOST];
+    uint32_t said = 0, added = 0;
+    for (char *at = words; at && *at && said < MOST; at += strcspn(at, "\n")) {
         if (*at == '\n')
             *at++ = '\0';
-        list[count++] = at;
+        list[said++] = at;
+    }
+    while (said + added < MOST && added < count) {
+        list[said + added] = files[added];
+        added++;
     }
     if (words)
-        loader_start(v->loader, list, count);
+        loader_add(v->loader, list, said + added, added);
     free(words);
+}
+
+void stage_reload(view *v) {
+    open_text(v, document_words(v->doc, &v->shot, NULL), NULL, 0);
+}
+
+void stage_add(view *v, const char *const *files, uint32_t count) {
+    if (v->open && document_joins(v->doc))
+        open_text(v, document_joined(v->doc, &v->shot), files, count);
+    else
+        loader_start(v->loader, files, count);
+}
+
+void stage_remove(view *v, const char *file) {
+    open_text(v, document_words(v->doc, &v->shot, file), NULL, 0);
 }
 
 /* ---- what the host draws ----------------------------------------------------------------- */
