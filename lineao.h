@@ -300,7 +300,7 @@ typedef enum lao_depth_test {
 } lao_depth_test;
 
 #define LAO_MAX_BUFFERS 24 /* of all modules of a context */
-#define LAO_MAX_READS 28
+#define LAO_MAX_READS 16 /* texture units that every stage has at least (OpenGL 3.3, Vulkan) */
 #define LAO_MAX_WRITES 6
 #define LAO_MAX_CONSTANTS 12
 #define LAO_MAX_CONDITIONS 3
@@ -593,7 +593,7 @@ typedef struct lao_view {
     uint32_t id;
 } lao_view; /* 0: none */
 
-#define LAO_BACKEND_ABI 2u
+#define LAO_BACKEND_ABI 3u
 struct lao_backend; /* the seam, below; the host only carries it from lao_*_backend to lao_create */
 
 /* A set of polylines. Points on a line that repeat bit for bit are merged; a line whose first and
@@ -604,7 +604,9 @@ typedef struct lao_lines_desc {
     uint32_t point_count;
     const uint32_t *offsets; /* line_count + 1 indices of points; NULL: one line of all points */
     const float *points;     /* 3 * point_count, mm */
-    const float *times;      /* (Optional) point_count, ms; NaN: never; absent: 0 */
+    const float *times;      /* (Optional) point_count, ms; NaN: never; absent: 0. A frame of a
+                                trail draws the segments near its time alone, for which 4 bytes
+                                each are kept */
     const uint8_t *colors;   /* (Optional) 4 * point_count, RGBA, display values */
     float color[4];          /* without `colors`: one colour, display values 0..1; all zero: sand */
 } lao_lines_desc;
@@ -974,17 +976,33 @@ typedef struct lao_buffer_desc {
     const void *data;
 } lao_buffer_desc;
 
+/* Segments that begin at about the same time: texels first .. first + count - 1 of the buffer
+   "#order" hold their numbers. */
+typedef struct lao_group {
+    float begin, end; /* ms: the earliest and the latest time of their points */
+    uint32_t first, count;
+} lao_group;
+
 /* What one draw reads and how much it draws: an object, or a stretch of a line set that fits one
    texel buffer (segment s reads texels s .. s + 3). */
 typedef struct lao_chunk {
     void
         *buffers[LAO_MAX_BUFFERS]; /* backend buffers by index in lao_graph.buffers; NULL: absent */
     uint32_t count;                /* segments; triangles */
+    const lao_group *groups;       /* in order of time; NULL: the lines have no times */
+    uint32_t group_count;
 } lao_chunk;
+
+/* The times that a set shows: |t - now| <= length (ms), to the nearest repetition (period > 0). */
+typedef struct lao_window {
+    int limited; /* 0: everything */
+    float now, length, period;
+} lao_window;
 
 typedef struct lao_draw {
     const lao_chunk *chunks; /* of the lines */
     uint32_t chunk_count;
+    lao_window window;       /* of the lines */
     const lao_chunk *object; /* NULL: none */
 } lao_draw;
 
@@ -1008,6 +1026,17 @@ typedef struct lao_execution {
    holds the buffers of the set's object. Thread: any. */
 LAO_API uint32_t lao_step_draws(const lao_execution *execution, const lao_plan_step *step,
                                 const lao_chunk **chunks);
+
+/* A stretch of a draw: vertices of segments first .. first + count - 1. `next` is lao_step_range's
+   own. */
+typedef struct lao_range {
+    uint32_t first, count, next;
+} lao_range;
+/* Turns `range`, all zero at first, into the next stretch of a chunk that a LAO_PASS_DRAW_LINES
+   step draws; returns 0 when there is none left. A row that reads "#order" leaves out the groups
+   that the set's window does not reach; any other draws all segments. Thread: any. */
+LAO_API int lao_step_range(const lao_execution *execution, const lao_plan_step *step,
+                           const lao_chunk *chunk, lao_range *range);
 
 typedef struct lao_backend {
     uint32_t abi; /* LAO_BACKEND_ABI */
@@ -2123,8 +2152,9 @@ extern "C" {
 #define LAO__READ(image) {image, LAO_LEVEL_SAME, 0, LAO_PHASE_THIS, LAO_LOAD_DISCARD}
 #define LAO__READ_FINER(image) {image, LAO_LEVEL_FINER, 0, LAO_PHASE_THIS, LAO_LOAD_DISCARD}
 #define LAO__READ_LEVEL(image, level) {image, LAO_LEVEL_INDEX, level, LAO_PHASE_THIS, LAO_LOAD_DISCARD}
-#define LAO__READ_ALL(image) LAO__READ_LEVEL(image, 0), LAO__READ_LEVEL(image, 1), LAO__READ_LEVEL(image, 2), LAO__READ_LEVEL(image, 3), \
-                             LAO__READ_LEVEL(image, 4), LAO__READ_LEVEL(image, 5), LAO__READ_LEVEL(image, 6), LAO__READ_LEVEL(image, 7)
+#define LAO__READ_COARSE(image) LAO__READ_LEVEL(image, 1), LAO__READ_LEVEL(image, 2), LAO__READ_LEVEL(image, 3), LAO__READ_LEVEL(image, 4), \
+                                LAO__READ_LEVEL(image, 5), LAO__READ_LEVEL(image, 6), LAO__READ_LEVEL(image, 7)
+#define LAO__READ_ALL(image) LAO__READ_LEVEL(image, 0), LAO__READ_COARSE(image)
 #define LAO__CLEAR(image) {image, LAO_LEVEL_SAME, 0, LAO_PHASE_THIS, LAO_LOAD_CLEAR}
 #define LAO__KEEP(image) {image, LAO_LEVEL_SAME, 0, LAO_PHASE_THIS, LAO_LOAD_KEEP}
 #define LAO__WRITE(image) {image, LAO_LEVEL_SAME, 0, LAO_PHASE_THIS, LAO_LOAD_DISCARD}
@@ -2159,13 +2189,13 @@ static const lao_pass_row lao__passes[] = {
     /* G-buffer: colour and mask, tangent and zoom, linear depth (METHODS 1.1). One row of four draws a set: what the fragments need to know of the line's
        outline or of a fade costs where there is none, and who writes depth is tested late */
     {"lines", LAO_PASS_DRAW_LINES, "lines", 0, LAO_STAGE_DRAW, LAO_SCOPE_PER_SET, LAO_REPEAT_NONE, NULL, LAO_BLEND_NONE, LAO_DEPTH_NEARER, LAO_CULL_NONE, {LAO__LINES, {"halo", '=', LAO_HALO_NONE}, {"trail", '!', LAO_TRAIL_OPACITY}},
-     {LAO__CLEAR("color"), LAO__CLEAR("tangent"), LAO__CLEAR("depth"), LAO__KEEP("zbuffer")}, {LAO__READ("#points"), LAO__READ("#colors")}},
+     {LAO__CLEAR("color"), LAO__CLEAR("tangent"), LAO__CLEAR("depth"), LAO__KEEP("zbuffer")}, {LAO__READ("#points"), LAO__READ("#colors"), LAO__READ("#order")}},
     {"lines_fading", LAO_PASS_DRAW_LINES, "lines_rim", 0, LAO_STAGE_DRAW, LAO_SCOPE_PER_SET, LAO_REPEAT_NONE, NULL, LAO_BLEND_NONE, LAO_DEPTH_NEARER, LAO_CULL_NONE, {LAO__LINES, {"halo", '=', LAO_HALO_NONE}, {"trail", '=', LAO_TRAIL_OPACITY}},
-     {LAO__CLEAR("color"), LAO__CLEAR("tangent"), LAO__CLEAR("depth"), LAO__KEEP("zbuffer")}, {LAO__READ("#points"), LAO__READ("#colors")}},
+     {LAO__CLEAR("color"), LAO__CLEAR("tangent"), LAO__CLEAR("depth"), LAO__KEEP("zbuffer")}, {LAO__READ("#points"), LAO__READ("#colors"), LAO__READ("#order")}},
     {"lines_rim", LAO_PASS_DRAW_LINES, "lines_rim", 0, LAO_STAGE_DRAW, LAO_SCOPE_PER_SET, LAO_REPEAT_NONE, NULL, LAO_BLEND_NONE, LAO_DEPTH_NEARER, LAO_CULL_NONE, {LAO__LINES, {"halo", '=', LAO_HALO_UNIFORM}},
-     {LAO__CLEAR("color"), LAO__CLEAR("tangent"), LAO__CLEAR("depth"), LAO__KEEP("zbuffer")}, {LAO__READ("#points"), LAO__READ("#colors")}},
+     {LAO__CLEAR("color"), LAO__CLEAR("tangent"), LAO__CLEAR("depth"), LAO__KEEP("zbuffer")}, {LAO__READ("#points"), LAO__READ("#colors"), LAO__READ("#order")}},
     {"lines_halo", LAO_PASS_DRAW_LINES, "lines_halo", 0, LAO_STAGE_DRAW, LAO_SCOPE_PER_SET, LAO_REPEAT_NONE, NULL, LAO_BLEND_NONE, LAO_DEPTH_NEARER, LAO_CULL_NONE, {LAO__LINES, {"halo", '=', LAO_HALO_DEPTH}},
-     {LAO__CLEAR("color"), LAO__CLEAR("tangent"), LAO__CLEAR("depth"), LAO__KEEP("zbuffer")}, {LAO__READ("#points"), LAO__READ("#colors")}},
+     {LAO__CLEAR("color"), LAO__CLEAR("tangent"), LAO__CLEAR("depth"), LAO__KEEP("zbuffer")}, {LAO__READ("#points"), LAO__READ("#colors"), LAO__READ("#order")}},
     /* the host's G-buffer instead of our lines: its mask as depth, for the passes that skip background by it */
     {"cover", LAO_PASS_FULLSCREEN, "cover", 0, LAO_STAGE_DRAW, LAO_SCOPE_PER_SET, LAO_REPEAT_NONE, NULL, LAO_BLEND_NONE, LAO_DEPTH_ALWAYS, LAO_CULL_NONE, {{"@color", '>', 0}},
      {LAO__CLEAR("zbuffer")}, {LAO__READ("color")}},
@@ -2182,7 +2212,7 @@ static const lao_pass_row lao__passes[] = {
      {LAO__READ_FINER("tensor"), LAO__READ_FINER("level_tangent")}},
     {"occlusion", LAO_PASS_FULLSCREEN, "occlusion", 0, LAO_STAGE_SHADE, LAO_SCOPE_PER_SET, LAO_REPEAT_NONE, NULL, LAO_BLEND_NONE, LAO_DEPTH_COVERED, LAO_CULL_NONE, {LAO__LINES, {"occlusion", '=', 1}},
      {LAO__CLEAR("ao"), LAO__KEEP("zbuffer")},
-     {LAO__READ("tangent"), LAO__READ_ALL("level"), LAO__READ_ALL("level_tangent")}},
+     {LAO__READ("tangent"), LAO__READ_ALL("level"), LAO__READ_COARSE("level_tangent")}},
     /* for debugging only: shadows leak into what is not shadowed (Koehler 2017, 4.4) */
     {"smooth_x", LAO_PASS_FULLSCREEN, "smooth", 0, LAO_STAGE_SHADE, LAO_SCOPE_PER_SET, LAO_REPEAT_COUNT, "smoothing", LAO_BLEND_NONE, LAO_DEPTH_NONE, LAO_CULL_NONE, {LAO__LINES, {"occlusion", '=', 1}},
      {LAO__OTHER("ao")}, {LAO__READ("ao"), LAO__READ("color")}},
@@ -2213,7 +2243,7 @@ static const lao_preset_row lao__presets[] = {
     {"paper", "align", LAO_ALIGN_PAPER}
 };
 
-static const lao_buffer_row lao__buffers[] = {{"points", LAO_FORMAT_RGBA32F}, {"colors", LAO_FORMAT_RGBA8}};
+static const lao_buffer_row lao__buffers[] = {{"points", LAO_FORMAT_RGBA32F}, {"colors", LAO_FORMAT_RGBA8}, {"order", LAO_FORMAT_R32F}};
 
 static const lao_module lao__lines_module = {
     "lines",
@@ -2884,8 +2914,20 @@ static int lao__row_is_used(const lao_graph *graph, uint32_t index) {
     return 0;
 }
 
+static const lao_shader *lao__shader_find(const lao_shader *shaders, uint32_t count,
+                                          const char *name) {
+    uint32_t i;
+    for (i = 0; i < count; i++) {
+        if (strcmp(shaders[i].name, name) == 0) {
+            return &shaders[i];
+        }
+    }
+    return NULL;
+}
+
 int lao_graph_check(const lao_graph *graph, const lao_shader *shaders, uint32_t shader_count,
                     char *text, size_t text_size) {
+    const lao_shader *shader;
     uint32_t i, k, m, used;
     if (lao__check_names(graph, text, text_size) != 0) {
         return -1;
@@ -2931,15 +2973,19 @@ int lao_graph_check(const lao_graph *graph, const lao_shader *shaders, uint32_t 
             return lao__fault(text, text_size, "nothing uses what pass '%s' writes%s", row->name,
                               "");
         }
-        for (k = 0; shaders && k < shader_count && strcmp(shaders[k].name, row->shader) != 0; k++) {
+        shader = lao__shader_find(graph->modules[m]->shaders, graph->modules[m]->shader_count,
+                                  row->shader);
+        if (!shader) {
+            shader = lao__shader_find(shaders, shaders ? shader_count : 0, row->shader);
         }
-        used = shaders && k < shader_count;
-        for (k = 0; k < graph->modules[m]->shader_count; k++) {
-            used |= strcmp(graph->modules[m]->shaders[k].name, row->shader) == 0;
-        }
-        if (shaders && !used) {
+        if (shaders && !shader) {
             return lao__fault(text, text_size, "pass '%s' has no shader '%s'", row->name,
                               row->shader);
+        }
+        if (shader && shader->texture_count > LAO_MAX_READS) {
+            return lao__fault(text, text_size,
+                              "shader '%s' of pass '%s' has more textures than a pass can read",
+                              row->shader, row->name);
         }
     }
     for (i = 0; i < graph->image_count; i++) {
@@ -3668,6 +3714,7 @@ void lao_plan_print(const lao_graph *graph, const lao_plan *plan,
  * context */
 
 #define LAO__KEY_SIZE 9
+#define LAO__GROUPS 256u /* of a chunk, at most */
 
 typedef struct lao__lines {
     lao_chunk *chunks;
@@ -3892,6 +3939,7 @@ static void lao__chunk_clear(lao_context *context, lao_chunk *chunk) {
             context->backend.buffer_destroy(context->self, chunk->buffers[i]);
         }
     }
+    lao__delete(&context->allocator, (void *)chunk->groups, LAO__GROUPS, sizeof *chunk->groups);
     memset(chunk, 0, sizeof *chunk);
 }
 
@@ -3985,6 +4033,7 @@ typedef struct lao__texels {
     float *points;   /* x, y, z, time */
     uint8_t *colors; /* RGBA */
     uint64_t count;
+    int timed;
 } lao__texels;
 
 /* A time that is none, or too large to be told from a ghost's, is never reached. */
@@ -4101,7 +4150,108 @@ static void lao__lines_box(lao__lines *lines, const lao_lines_desc *desc) {
 }
 
 /* Rows of the line module's buffers, which stand first in every graph. */
-enum { LAO__BUFFER_POINTS, LAO__BUFFER_COLORS };
+enum { LAO__BUFFER_POINTS, LAO__BUFFER_COLORS, LAO__BUFFER_ORDER };
+
+/* The time at which segment i begins; of none that is never reached, or lies between two lines. */
+static int lao__segment_time(const float *points, uint32_t i, float *begin, float *end) {
+    const float a = points[4 * ((size_t)i + 1) + 3], b = points[4 * ((size_t)i + 2) + 3];
+    *begin = lao_min(a, b);
+    *end = lao_max(a, b);
+    return *end < 1.0e30f;
+}
+
+enum { LAO__BINS = 65536 };
+
+/* Segments by the bin of time in which they begin; `groups` of about as many segments each. */
+typedef struct lao__order {
+    const float *points;
+    uint32_t segment_count, total, group_count;
+    double earliest, per_bin;
+    uint32_t *bins; /* LAO__BINS: first segments, then groups */
+    lao_group *groups;
+    float *order; /* numbers of segments: floats tell them apart */
+} lao__order;
+
+static uint32_t lao__bin(const lao__order *o, float begin) {
+    return (uint32_t)((begin - o->earliest) * o->per_bin);
+}
+
+static void lao__order_count(lao__order *o) {
+    float begin, end, earliest = 0, latest = 0;
+    uint32_t i;
+    for (i = 0; i < o->segment_count; i++) {
+        if (lao__segment_time(o->points, i, &begin, &end)) {
+            earliest = o->total ? lao_min(earliest, begin) : begin;
+            latest = o->total ? lao_max(latest, begin) : begin;
+            o->total++;
+        }
+    }
+    o->earliest = earliest;
+    o->per_bin = latest > earliest ? (LAO__BINS - 1) / ((double)latest - earliest) : 0;
+    for (i = 0; i < o->segment_count; i++) {
+        if (lao__segment_time(o->points, i, &begin, &end)) {
+            o->bins[lao__bin(o, begin)]++;
+        }
+    }
+}
+
+/* Bins, in order, into the last group until it has its share. */
+static void lao__order_group(lao__order *o) {
+    uint32_t i, filled = 0;
+    for (i = 0; i < LAO__BINS; i++) {
+        uint32_t n = o->bins[i];
+        if (n > 0 && (uint64_t)filled * LAO__GROUPS >= (uint64_t)o->group_count * o->total) {
+            o->groups[o->group_count++].first = filled;
+        }
+        o->bins[i] = n > 0 ? o->group_count - 1 : 0;
+        filled += n;
+    }
+}
+
+/* Within a group segments keep the order of the lines, in which their points lie in memory. */
+static void lao__order_fill(lao__order *o) {
+    float begin, end;
+    uint32_t i;
+    for (i = 0; i < o->segment_count; i++) {
+        if (lao__segment_time(o->points, i, &begin, &end)) {
+            lao_group *group = &o->groups[o->bins[lao__bin(o, begin)]];
+            group->begin = group->count ? lao_min(group->begin, begin) : begin;
+            group->end = group->count ? lao_max(group->end, end) : end;
+            o->order[group->first + group->count++] = (float)i;
+        }
+    }
+}
+
+/* Puts the buffer "#order" and its groups into a chunk whose points are given. */
+static lao_result lao__chunk_order(lao_context *context, lao_chunk *chunk, const float *points) {
+    const lao_allocator *allocator = &context->allocator;
+    lao_result result;
+    lao_buffer_desc buffer;
+    lao__order o;
+    memset(&o, 0, sizeof o);
+    o.points = points;
+    o.segment_count = chunk->count;
+    o.bins = (uint32_t *)lao__new(allocator, LAO__BINS, sizeof *o.bins);
+    o.order = (float *)lao__new(allocator, chunk->count, sizeof *o.order);
+    o.groups = (lao_group *)lao__new(allocator, LAO__GROUPS, sizeof *o.groups);
+    chunk->groups = o.groups;
+    if (o.bins && o.order && o.groups) {
+        lao__order_count(&o);
+        lao__order_group(&o);
+        lao__order_fill(&o);
+        chunk->group_count = o.group_count;
+        buffer.format = LAO_FORMAT_R32F;
+        buffer.texel_count = o.total ? o.total : 1;
+        buffer.data = o.order;
+        result = context->backend.buffer_create(context->self, &buffer,
+                                                &chunk->buffers[LAO__BUFFER_ORDER]);
+    } else {
+        result = lao__fail(context, LAO_LOG_LINES_MEMORY, NULL);
+    }
+    lao__delete(allocator, o.bins, LAO__BINS, sizeof *o.bins);
+    lao__delete(allocator, o.order, chunk->count, sizeof *o.order);
+    return result;
+}
 
 static lao_result lao__chunk_make(lao_context *context, lao_chunk *chunk, const lao__texels *texels,
                                   uint64_t first, uint32_t count) {
@@ -4119,6 +4269,9 @@ static lao_result lao__chunk_make(lao_context *context, lao_chunk *chunk, const 
                                                 &chunk->buffers[LAO__BUFFER_COLORS]);
     }
     chunk->count = count - 3;
+    if (result == LAO_OK && texels->timed) {
+        result = lao__chunk_order(context, chunk, texels->points + 4 * first);
+    }
     return result;
 }
 
@@ -4129,7 +4282,7 @@ static lao_result lao__lines_upload(lao_context *context, const lao__texels *tex
     uint64_t most = context->caps.max_buffer_texels, first, segments;
     lao_result result = LAO_OK;
     uint32_t i;
-    most = most > 0x20000000u ? 0x20000000u : most; /* 4 vertices each in 31 bits */
+    most = most > 0x1000000u ? 0x1000000u : most; /* segments that floats tell apart */
     if (texels->count < 4) {
         return LAO_OK;
     }
@@ -4158,6 +4311,7 @@ static lao_result lao__lines_fill(lao_context *context, const lao_lines_desc *de
     uint64_t capacity;
     memset(lines, 0, sizeof *lines);
     memset(&texels, 0, sizeof texels);
+    texels.timed = desc->times != NULL;
     whole[0] = 0;
     whole[1] = desc->point_count;
     offsets = offsets ? offsets : whole;
@@ -4801,12 +4955,24 @@ static void lao__frame_uniforms_fill(const lao__view *view, const lao_frame *fra
     u->history.x = (float)(view->history < 0xffffffu ? view->history : 0xffffffu);
 }
 
+/* The window of time that a trail leaves of a set's lines. */
+static lao_window lao__window(const float *values, float time) {
+    const int trail = (int)values[LAO_SETTING_ID_trail];
+    lao_window window;
+    window.limited = trail == LAO_TRAIL_TAPER || trail == LAO_TRAIL_OPACITY;
+    window.length = values[LAO_SETTING_ID_trail_length];
+    window.period = values[LAO_SETTING_ID_period];
+    window.now = lao_trail_now(time, window.period);
+    return window;
+}
+
 /* Settings, lines and object of one set. */
 static lao_result lao__frame_set(lao_context *context, lao__view *view, const lao_set *set,
-                                 uint32_t index, int *structural) {
+                                 uint32_t index, float time, int *structural) {
     const lao__lines *lines = set ? lao__lines_get(context, set->lines) : NULL;
     const lao__object *object = set ? lao__object_get(context, set->object) : NULL;
     lao_draw *draw = &view->draws[index];
+    lao_result result;
     uint32_t i;
     if (set && set->lines.id != 0 && !lines) {
         return lao__fail(context, LAO_LOG_LINES_HANDLE, "lao_frame.sets");
@@ -4836,7 +5002,9 @@ static lao_result lao__frame_set(lao_context *context, lao__view *view, const la
             view->further_items[i] = object->further_items[i];
         }
     }
-    return lao__set_resolve(context, view, index, set, structural);
+    result = lao__set_resolve(context, view, index, set, structural);
+    draw->window = lao__window(view->value_rows[index], time);
+    return result;
 }
 
 static lao_result lao__frame_sets(lao_context *context, lao__view *view, const lao_frame *frame,
@@ -4847,14 +5015,14 @@ static lao_result lao__frame_sets(lao_context *context, lao__view *view, const l
     memset(view->further_items, 0, sizeof view->further_items);
     for (s = 0; s < sets && result == LAO_OK; s++) {
         result = lao__frame_set(context, view, s < frame->set_count ? &frame->sets[s] : NULL, s,
-                                structural);
+                                frame->time, structural);
     }
     return result;
 }
 
 uint32_t lao_step_draws(const lao_execution *execution, const lao_plan_step *step,
                         const lao_chunk **chunks) {
-    static const lao_chunk nothing = {{NULL}, 0};
+    static const lao_chunk nothing = {{NULL}, 0, NULL, 0};
     const lao_draw *draw = &execution->draws[step->set];
     switch (step->row->kind) {
     case LAO_PASS_DRAW_LINES:
@@ -4867,6 +5035,40 @@ uint32_t lao_step_draws(const lao_execution *execution, const lao_plan_step *ste
         *chunks = draw->object ? draw->object : &nothing;
         return 1;
     }
+}
+
+/* Does some repetition of the window reach the group? Rather too often than that rounding lets the
+   vertex stage see what is left out here. */
+static int lao__group_seen(const lao_group *group, const lao_window *window) {
+    const double now = window->now, reach = window->length, period = window->period;
+    const double begin = group->begin, end = group->end;
+    const double slack = 1e-5 * (fabs(begin) + fabs(end) + fabs(now) + reach + period);
+    const double low = begin - now - reach - slack, high = end - now + reach + slack;
+    return !(period > 0 ? period * floor(high / period) < low : low > 0 || high < 0);
+}
+
+int lao_step_range(const lao_execution *execution, const lao_plan_step *step,
+                   const lao_chunk *chunk, lao_range *range) {
+    const lao_window *window = &execution->draws[step->set].window;
+    const lao_group *groups = chunk->groups;
+    uint32_t i, g = range->next;
+    int ordered = 0;
+    for (i = 0; i < step->read_count; i++) {
+        ordered |= step->reads[i] == LAO_READ_BUFFER + LAO__BUFFER_ORDER;
+    }
+    if (!ordered || !window->limited || !groups) {
+        range->count = chunk->count;
+        return range->next++ == 0 && range->count > 0;
+    }
+    while (g < chunk->group_count && !lao__group_seen(&groups[g], window)) {
+        g++;
+    }
+    for (i = g; g < chunk->group_count && lao__group_seen(&groups[g], window); g++) {
+        range->first = groups[i].first;
+        range->count = groups[g].first + groups[g].count - range->first;
+    }
+    range->next = g;
+    return g > i;
 }
 
 static lao_result lao__frame_execute(lao_context *context, lao__view *view, const lao_frame *frame,

@@ -1248,6 +1248,8 @@ static lao_result lao__gl_view_make(lao__gl *gl, lao__gl_view *view, const lao_p
         view->unit_count =
             step->read_count > view->unit_count ? step->read_count : view->unit_count;
         result = lao__gl_framebuffers_make(gl, view, plan, i);
+        if (!result && !shaders[step->shader])
+            result = lao__gl_fail(gl->host, LAO_LOG_SHADER_COMPILE, "%s", step->row->shader);
         if (!result)
             result = lao__gl_program_get(gl, shaders[step->shader], step->constants,
                                          &view->steps[i].program);
@@ -1489,16 +1491,17 @@ static void lao__gl_bind_buffers(const lao__gl *gl, const lao_plan_step *step,
 }
 
 /* Segments in pieces that 16-bit indices reach. */
-static void lao__gl_draw_segments(const lao__gl *gl, uint32_t segment_count) {
+static void lao__gl_draw_segments(const lao__gl *gl, const lao_range *range) {
     uint32_t first, count;
-    for (first = 0; first < segment_count; first += count) {
-        count = lao__gl_lower(segment_count - first, LAO__GL_QUADS);
+    for (first = 0; first < range->count; first += count) {
+        count = lao__gl_lower(range->count - first, LAO__GL_QUADS);
         /* llvmpipe keeps every triangle it has not come to yet, about 500 bytes each, and may be
            millions behind: it catches up before more are drawn */
         if (gl->software && first % (LAO__GL_QUADS * LAO__GL_PIECES) == 0 && first > 0)
             gl->Finish();
         gl->DrawElementsBaseVertex(LAO__GL_TRIANGLES, (lao__gl_int)(count * 6),
-                                   LAO__GL_UNSIGNED_SHORT, NULL, (lao__gl_int)(first * 4));
+                                   LAO__GL_UNSIGNED_SHORT, NULL,
+                                   (lao__gl_int)((range->first + first) * 4));
     }
 }
 
@@ -1509,9 +1512,11 @@ static void lao__gl_draw(const lao__gl *gl, const lao_plan_step *step,
     uint32_t i;
     for (i = 0; i < count; i++) {
         lao__gl_bind_buffers(gl, step, &chunks[i]);
-        if (step->row->kind == LAO_PASS_DRAW_LINES)
-            lao__gl_draw_segments(gl, chunks[i].count);
-        else if (step->row->kind == LAO_PASS_DRAW_MESH)
+        if (step->row->kind == LAO_PASS_DRAW_LINES) {
+            lao_range range = {0, 0, 0};
+            while (lao_step_range(execution, step, &chunks[i], &range))
+                lao__gl_draw_segments(gl, &range);
+        } else if (step->row->kind == LAO_PASS_DRAW_MESH)
             gl->DrawArrays(LAO__GL_TRIANGLES, 0, (lao__gl_int)(chunks[i].count * 3));
         else
             gl->DrawArrays(LAO__GL_TRIANGLES, 0, 3);

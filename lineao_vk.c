@@ -1524,27 +1524,29 @@ static void lao__vk_catch_up(const lao__vk *vk, const lao__vk_build *build,
 /* Segments in pieces that 16-bit indices reach. */
 static void lao__vk_draw_segments(const lao__vk *vk, const lao__vk_build *build,
                                   const lao_execution *execution, const lao_plan_step *step,
-                                  uint32_t segment_count, VkCommandBuffer commands) {
+                                  const lao_range *range, VkCommandBuffer commands) {
     uint32_t first, left;
-    for (first = 0; first < segment_count; first += LAO__VK_QUADS) {
-        left = lao__vk_least(segment_count - first, LAO__VK_QUADS);
+    for (first = 0; first < range->count; first += LAO__VK_QUADS) {
+        left = lao__vk_least(range->count - first, LAO__VK_QUADS);
         if (vk->software && first % (LAO__VK_QUADS * LAO__VK_PIECES) == 0 && first > 0)
             lao__vk_catch_up(vk, build, execution, step, commands);
-        vk->call.CmdDrawIndexed(commands, 6 * left, 1, 0, (int32_t)(4 * first), 0);
+        vk->call.CmdDrawIndexed(commands, 6 * left, 1, 0, (int32_t)(4 * (range->first + first)), 0);
     }
 }
 
 static void lao__vk_draw(const lao__vk *vk, const lao__vk_build *build,
                          const lao_execution *execution, const lao_plan_step *step,
                          const lao_chunk *chunk, VkCommandBuffer commands) {
+    lao_range range = {0, 0, 0};
     uint32_t i;
     for (i = 0; i < LAO_MAX_BUFFERS; i++) {
         if (chunk->buffers[i])
             ((lao__vk_texels *)chunk->buffers[i])->object.last_use = vk->epoch;
     }
-    if (step->row->kind == LAO_PASS_DRAW_LINES)
-        lao__vk_draw_segments(vk, build, execution, step, chunk->count, commands);
-    else if (step->row->kind == LAO_PASS_DRAW_MESH)
+    if (step->row->kind == LAO_PASS_DRAW_LINES) {
+        while (lao_step_range(execution, step, chunk, &range))
+            lao__vk_draw_segments(vk, build, execution, step, &range, commands);
+    } else if (step->row->kind == LAO_PASS_DRAW_MESH)
         vk->call.CmdDraw(commands, 3 * chunk->count, 1, 0, 0);
     else
         vk->call.CmdDraw(commands, 3, 1, 0, 0);

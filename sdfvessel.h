@@ -294,6 +294,22 @@ typedef struct sdv_svg_desc {
 SDV_API int sdv_layout_write_svg(const sdv_reduced *reduced, const sdv_layout *layout,
                                  const sdv_svg_desc *desc, const sdv_writer *writer);
 
+typedef struct sdv_drawing_desc {
+    float width, height; /* mm; 0: 200 x 100, radial 150 x 150 */
+    uint32_t radial;     /* non-zero: angle h, radius 1 - s */
+    float thickness;     /* mm, full, of the thinnest edge; 0: what suits the number of edges */
+} sdv_drawing_desc;
+/* The layout as a tree of its own, to be drawn like any tree into a view of its own: an
+   orthographic camera above the plane z = 0 sees it between (0, 0) and (width, height), the root on
+   top. Its node k is node k of the tree, on the edge of its reduced node by its way along the
+   vessel; from tree->node_count on come the extra nodes (sdv_reduced.ids), so that colours of nodes
+   serve both. Edges are the thicker the wider their vessels, by the root of the radius, up to four
+   times. Loops are cut. `desc` NULL: defaults. Free with sdv_tree_free. Fails with NULL_ARGUMENT,
+   MEMORY. */
+SDV_API lao_result sdv_layout_tree(const sdv_host *host, const sdv_tree *tree,
+                                   const sdv_reduced *reduced, const sdv_layout *layout,
+                                   const sdv_drawing_desc *desc, sdv_tree *drawing);
+
 /* ------------------------------------------------------------------------------------------------
  * the distance field on a grid */
 
@@ -313,7 +329,7 @@ typedef struct sdv_grid_desc {
    list is not empty; else that to the list of the nearest cell that has one, d <= x <= d + 1.74
    cells y  that nearest cell (itself where occupied; ties: the lowest index) z  occupied: place of
    its list in `ids`; else how far a ray may go from any point of the cell, mm w  length of the list
-   Memory: 20 bytes a cell, 4 an entry of the lists, 40 a cone. */
+   Memory: 20.2 bytes a cell, 4 an entry of the lists, 40 a cone. */
 typedef struct sdv_grid {
     lao_v3 origin; /* lower corner, mm */
     float cell;    /* mm */
@@ -324,6 +340,8 @@ typedef struct sdv_grid {
     lao_v4 *cones;        /* 2 per cone: centre and radius of both ends (parent, child) */
     uint32_t *cone_nodes; /* 2 per cone: the nodes */
     uint32_t *layer;      /* private: per cell x + 65536 y of the nearest occupied one at its z */
+    uint32_t *occupied;   /* private: a bit per cell that lists something, words along x */
+    uint32_t id_room;     /* private: how many `ids` there is memory for */
     uint32_t rebuilt;     /* sdv_grid_update: 1 when it had to build everything anew */
     lao_allocator allocator; /* private */
 } sdv_grid;
@@ -518,6 +536,8 @@ SDV_API lao_result sdv_pull_push(const sdv_host *host, const sdv_pull_push_desc 
       "background)")                                                                               \
     X(void_exponent, INT, 1, 1000, 25, 1, "", "",                                                  \
       "how little the void's depth takes over from afar (k of L19)")                               \
+    X(void_reach, FLOAT, 0, 1000, 6, 0, "%", "",                                                   \
+      "how far from a vessel the void's ink ends, of the scene's diameter; 0: nowhere")            \
     X(isolines, INT, 0, 1000, 30, 0, "", "", "lines of depth of the chromadepth; 0: none")         \
     X(ink_step, FLOAT, 0.001f, 1, 0.1f, 0, "", "",                                                 \
       "how much of what a new solution changes of a place's ink shows in a frame; 1: all at once") \
@@ -621,11 +641,14 @@ SDV_API lao_result sdv_object_move(const sdv_host *host, const sdv_tree *tree,
    Fails with NULL_ARGUMENT, MESH, MEMORY. */
 SDV_API lao_result sdv_object_mesh(const sdv_host *host, const sdv_mesh_desc *desc,
                                    sdv_object *object);
-/* Describes a surface that the host has drawn itself. Each frame names three images of its own
-   (lao_frame.imports; as large as the view, `supersampling` 1): "vessel_position" (RGBA32F; world,
-   mm; w 0 where there is a surface, -1 elsewhere), "vessel_normal" (RGBA32F; world, unit, towards
-   the viewer) and "vessel_color" (RGBA8); with guide=own "vessel_direction" (RGBA32F; world; w: how
-   sure, 0 .. 1) too. bounds: lower and upper corner (6 floats), mm. Fails with NULL_ARGUMENT. */
+/* Describes a surface that the host has drawn itself. Each frame names images of its own
+   (lao_frame.imports; as large as the view times `supersampling`, row 0 at the bottom):
+   "vessel_position" (RGBA32F; world, mm; w 0 where there is a surface, -1 elsewhere), or in its
+   place "vessel_drawn_depth" (x: a depth buffer's value, 0 .. 1 by lao_frame.camera; nothing where
+   it is 0 or 1). (Optional) "vessel_normal" (RGBA32F; world, unit, towards the viewer; w: beside
+   the surface mm from the ray to it, for void_reach) and "vessel_color" (RGBA8): else normals come
+   from neighbouring places, and it is white. With guide=own "vessel_direction" (RGBA32F; world; w:
+   how sure, 0 .. 1). bounds: lower and upper corner (6 floats), mm. Fails with NULL_ARGUMENT. */
 SDV_API lao_result sdv_object_drawn(const sdv_host *host, const float *bounds, sdv_object *object);
 /* Gives it a texture of ink for the style `pattern`: a picture of size x size grey values (1 ..
    SDV_MOST_PATTERN; smaller: inked first), which lies in half a period of (u, v) and is mirrored
@@ -1571,11 +1594,11 @@ LAO_FN float sdv_outline_width(float width, float unit, float zoom) {
     LAO_EXACT float mm = width / zoom;
     return unit > 0.5f ? width : mm;
 }
-/* How near to a vessel a ray must pass for anything to be drawn of it, mm. `shadow`, `halo`: % of
-   the diameter. */
+/* How near to a vessel a ray must pass for anything to be drawn of it, mm. `shadow`, `halo`, `ink`:
+   % of the diameter. */
 LAO_FN float sdv_near_miss_reach(float silhouette, float contour, float shadow, float halo,
-                                 float diameter) {
-    LAO_EXACT float widest = 0.01f * lao_max(shadow, halo) * diameter;
+                                 float ink, float diameter) {
+    LAO_EXACT float widest = 0.01f * lao_max(lao_max(shadow, halo), ink) * diameter;
     return lao_max(lao_max(silhouette, contour), widest);
 }
 /* Place of p along a cone's axis, 0 at a, 1 at b. */
@@ -1673,6 +1696,14 @@ LAO_FN float sdv_empty_depth(lao_v4 depth) {
 LAO_FN float sdv_depth_of(lao_m4 view, lao_v3 p) {
     lao_v3 q = lao_transform(view, p);
     return -q.z;
+}
+/* Depth before the camera, mm, of a depth buffer's value: the inverse of the projection to 0 .. 1;
+   SDV_FAR where the buffer holds either end, so nothing. */
+LAO_FN float sdv_drawn_depth(lao_m4 projection, float value) {
+    LAO_EXACT float over = projection.w.z - value * projection.w.w;
+    LAO_EXACT float under = projection.z.z - value * projection.z.w;
+    LAO_EXACT float z = over / under;
+    return value > 0.0f && value < 1.0f && lao_abs(z) < SDV_FAR ? z : SDV_FAR;
 }
 /* The place of the world at that depth of a pixel. */
 LAO_FN lao_v3 sdv_depth_place(lao_m4 world, lao_v2 slope, float depth, float orthographic) {
@@ -2126,6 +2157,13 @@ LAO_FN float sdv_ink_rest(float before, float now, float step) {
 LAO_FN float sdv_style_tone(float facing, float ambient, float diffuse, float light) {
     LAO_EXACT float r = (ambient + diffuse * lao_max(facing, 0.0f)) * light;
     return lao_clamp01(r);
+}
+/* What the void keeps of its ink where the ray passes a vessel at d_min mm: all beside it, nothing
+   from `reach` mm on, and all everywhere without a reach. */
+LAO_FN float sdv_void_share(float d_min, float reach) {
+    LAO_EXACT float near_ = lao_clamp01(1.0f - lao_max(d_min, 0.0f) / lao_max(reach, 1.0e-6f));
+    LAO_EXACT float r = near_ * near_ * (3.0f - 2.0f * near_);
+    return reach > 0.0f ? r : 1.0f;
 }
 /* Red near, blue far (METHODS 6.1, RSH06). */
 LAO_FN lao_v3 sdv_chromadepth(float depth) {
@@ -3361,6 +3399,126 @@ SDV_API int sdv_layout_write_svg(const sdv_reduced *reduced, const sdv_layout *l
     return stop ? stop : sdv__print(writer, "</g>\n</svg>\n");
 }
 
+/* ---- as a tree */
+typedef struct sdv__drawing {
+    const sdv_tree *tree;
+    const sdv_reduced *reduced;
+    const sdv_layout *layout;
+    sdv_svg_desc page;
+    float thin, widest; /* half thickness of the thinnest edge; greatest radius of a vessel, mm */
+    float *positions, *radii;
+    sdv_segment *segments;
+    uint32_t node_count, segment_count;
+} sdv__drawing;
+
+static void sdv__drawing_put(sdv__drawing *d, uint32_t id, uint32_t node, lao_v2 at) {
+    float part = d->widest > 0 ? lao_sqrt(d->tree->nodes[node].w / d->widest) : 0.0f;
+    d->positions[3 * (size_t)id] = at.x;
+    d->positions[3 * (size_t)id + 1] = d->page.height - at.y;
+    d->positions[3 * (size_t)id + 2] = 0.0f;
+    d->radii[id] = d->thin * (1.0f + 3.0f * part);
+}
+static void sdv__drawing_join(sdv__drawing *d, uint32_t parent, uint32_t child) {
+    d->segments[d->segment_count].parent = parent;
+    d->segments[d->segment_count++].child = child;
+}
+static float sdv__way(const sdv_tree *t, uint32_t node) {
+    const lao_v4 *a = t->nodes + node, *b = t->nodes + t->parents[node];
+    lao_v3 way = lao_v3_make(a->x - b->x, a->y - b->y, a->z - b->z);
+    return lao_sqrt(lao_v3_dot(way, way));
+}
+/* The edge above a reduced node, from below, with all nodes of the tree on it. */
+static void sdv__drawing_edge(sdv__drawing *d, uint32_t k) {
+    const sdv_reduced *r = d->reduced;
+    const sdv_tree *t = d->tree;
+    uint32_t up = r->parents[k], node = r->nodes[k], end, count = 0, i;
+    lao_v2 low = sdv__layout_place(d->layout, &d->page, k), top;
+    float way = 0.0f, whole = 0.0f;
+    if (up == SDV_NONE || r->ids[k] >= t->node_count) {
+        sdv__drawing_put(d, r->ids[k], node, low);
+        if (up != SDV_NONE) {
+            sdv__drawing_join(d, r->ids[up], r->ids[k]);
+        }
+        return;
+    }
+    top = sdv__layout_place(d->layout, &d->page, up);
+    end = r->nodes[up];
+    for (; node != end; node = t->parents[node]) {
+        whole += sdv__way(t, node);
+        count++;
+    }
+    node = r->nodes[k];
+    for (i = 0; i < count; i++, node = t->parents[node]) {
+        float at = whole > 0.0f ? way / whole : (float)i / (float)count;
+        sdv__drawing_put(d, node, node,
+                         lao_v2_make(low.x + at * (top.x - low.x), low.y + at * (top.y - low.y)));
+        sdv__drawing_join(d, t->parents[node] == end ? r->ids[up] : t->parents[node], node);
+        way += sdv__way(t, node);
+    }
+}
+/* The thinnest edge is a 200th of the page, less where edges are many, but never less than 2/5 of
+   that. */
+static void sdv__drawing_page(sdv__drawing *d, const sdv_drawing_desc *desc) {
+    sdv_drawing_desc none = {0, 0, 0, 0};
+    float unit, fits;
+    uint32_t i;
+    desc = desc ? desc : &none;
+    d->page.radial = desc->radial;
+    d->page.width = desc->width > 0 ? desc->width : desc->radial ? 150.0f : 200.0f;
+    d->page.height = desc->height > 0 ? desc->height : desc->radial ? 150.0f : 100.0f;
+    unit = lao_min(d->page.width, d->page.height) / 200.0f;
+    fits = 0.35f * d->page.width / (float)d->reduced->node_count;
+    d->thin = desc->thickness > 0 ? 0.5f * desc->thickness
+                                  : lao_min(0.5f * unit, lao_max(fits, 0.2f * unit));
+    for (i = 0; i < d->tree->node_count; i++) {
+        d->widest = lao_max(d->widest, d->tree->nodes[i].w);
+    }
+}
+SDV_API lao_result sdv_layout_tree(const sdv_host *host, const sdv_tree *tree,
+                                   const sdv_reduced *reduced, const sdv_layout *layout,
+                                   const sdv_drawing_desc *desc, sdv_tree *drawing) {
+    lao_allocator a = sdv__allocator(host);
+    lao_result result = LAO_ERROR_OUT_OF_MEMORY;
+    sdv__drawing d;
+    sdv_tree_desc out;
+    sdv_host silent;
+    uint32_t k;
+    if (!tree || !reduced || !layout || !drawing || !tree->memory || !reduced->memory ||
+        !layout->memory) {
+        return sdv__fail(host, SDV_LOG_NULL_ARGUMENT, "sdv_layout_tree");
+    }
+    memset(&d, 0, sizeof d);
+    memset(&out, 0, sizeof out);
+    memset(&silent, 0, sizeof silent); /* edges of length 0 are none of the host's business */
+    silent.allocator = a;
+    d.tree = tree;
+    d.reduced = reduced;
+    d.layout = layout;
+    d.node_count = tree->node_count;
+    for (k = 0; k < reduced->node_count; k++) {
+        d.node_count += reduced->ids[k] >= tree->node_count;
+    }
+    d.positions = (float *)sdv__take(&a, 3 * (uint64_t)d.node_count, sizeof *d.positions);
+    d.radii = (float *)sdv__take(&a, d.node_count, sizeof *d.radii);
+    d.segments = (sdv_segment *)sdv__take(&a, d.node_count, sizeof *d.segments);
+    if (d.positions && d.radii && d.segments) {
+        sdv__drawing_page(&d, desc);
+        for (k = 0; k < reduced->node_count; k++) {
+            sdv__drawing_edge(&d, k);
+        }
+        out.node_count = d.node_count;
+        out.positions = d.positions;
+        out.radii = d.radii;
+        out.segment_count = d.segment_count;
+        out.segments = d.segments;
+        result = sdv_tree_build(&silent, &out, drawing);
+    }
+    sdv__give(&a, d.positions);
+    sdv__give(&a, d.radii);
+    sdv__give(&a, d.segments);
+    return result == LAO_OK ? LAO_OK : sdv__fail(host, SDV_LOG_MEMORY, "drawing a layout");
+}
+
 /* ================================================================================================
  * jobs */
 
@@ -3425,6 +3583,25 @@ static size_t sdv__row(const sdv_grid *g, uint32_t y, uint32_t z) {
 }
 static size_t sdv__layer_size(const sdv_grid *g) {
     return (size_t)g->size[0] * g->size[1];
+}
+/* ---- which cells list something: a bit each, words along x */
+static uint32_t sdv__words(const sdv_grid *g) {
+    return (g->size[0] + 31) / 32;
+}
+/* row: y + size[1] z */
+static uint32_t *sdv__bits(const sdv_grid *g, size_t row) {
+    return g->occupied + sdv__words(g) * row;
+}
+/* The first bit from x on that is set; `end`: none before it. */
+static uint32_t sdv__next_bit(const uint32_t *bits, uint32_t x, uint32_t end) {
+    while (x < end) {
+        uint32_t word = bits[x / 32] >> (x % 32);
+        if (word & 1u) {
+            return x;
+        }
+        x = word ? x + 1 : (x | 31u) + 1;
+    }
+    return end;
 }
 
 /* ---- the box */
@@ -3659,13 +3836,19 @@ static void sdv__raster_binned(const sdv__fill *f, uint32_t z, sdv__visitor visi
 }
 static void sdv__count_layer(void *arg, uint32_t z) {
     sdv__fill *f = (sdv__fill *)arg;
-    lao_v4 *cells = f->grid->cells + sdv__row(f->grid, 0, z);
-    size_t i, n = sdv__layer_size(f->grid);
+    const sdv_grid *g = f->grid;
+    lao_v4 *cells = g->cells + sdv__row(g, 0, z);
+    size_t i, n = sdv__layer_size(g), rows = (size_t)g->size[1] * z;
     uint64_t sum = 0;
     memset(cells, 0, n * sizeof *cells);
     sdv__raster_binned(f, z, sdv__count_cell);
+    memset(sdv__bits(g, rows), 0, sizeof(uint32_t) * sdv__words(g) * g->size[1]);
     for (i = 0; i < n; i++) {
-        sum += (uint32_t)cells[i].w;
+        if (cells[i].w > 0.0f) {
+            uint32_t x = (uint32_t)(i % g->size[0]);
+            sdv__bits(g, rows + i / g->size[0])[x / 32] |= 1u << (x % 32);
+            sum += (uint32_t)cells[i].w;
+        }
     }
     f->layer_ids[z] = sum;
 }
@@ -3706,41 +3889,61 @@ static void sdv__envelope_make(sdv__envelope *e, const int32_t *apart, int32_t n
     }
 }
 
-/* The nearest occupied x of each row of a layer; SDV_NONE: none. */
-static void sdv__layer_rows(const sdv_grid *g, uint32_t z, uint32_t *out) {
-    uint32_t x, y, nx = g->size[0];
-    for (y = 0; y < g->size[1]; y++) {
-        const lao_v4 *cells = g->cells + sdv__row(g, y, z);
-        uint32_t *row = out + (size_t)nx * y, last = SDV_NONE;
-        for (x = 0; x < nx; x++) {
-            last = cells[x].w > 0.0f ? x : last;
+/* The nearest occupied x of each x of a row, of two as near the lower; SDV_NONE: none. */
+static void sdv__row_nearest(const uint32_t *bits, uint32_t nx, uint32_t *row) {
+    uint32_t x = 0, last = SDV_NONE, next = sdv__next_bit(bits, 0, nx);
+    while (next < nx) {
+        uint32_t until = last == SDV_NONE ? 0 : (last + next) / 2 + 1;
+        for (; x < until; x++) {
             row[x] = last;
         }
-        last = SDV_NONE;
-        for (x = nx; x-- > 0;) { /* the one behind wins only when it is nearer */
-            last = cells[x].w > 0.0f ? x : last;
-            if (last != SDV_NONE && (row[x] == SDV_NONE || last - x < x - row[x])) {
-                row[x] = last;
-            }
+        for (; x <= next; x++) {
+            row[x] = next;
         }
+        last = next;
+        next = sdv__next_bit(bits, next + 1, nx);
+    }
+    for (; x < nx; x++) {
+        row[x] = last;
     }
 }
-/* From there x + 65536 y of the nearest occupied cell of the layer. */
-static void sdv__layer_columns(const sdv_grid *g, uint32_t *out) {
+static void sdv__layer_rows(const sdv_grid *g, uint32_t z, uint32_t *rows) {
+    uint32_t y;
+    for (y = 0; y < g->size[1]; y++) {
+        sdv__row_nearest(sdv__bits(g, y + (size_t)g->size[1] * z), g->size[0],
+                         rows + (size_t)g->size[0] * y);
+    }
+}
+/* What a cell keeps to be found anew in a change. */
+enum { SDV__LISTED = 1, SDV__NEARER = 2, SDV__TURNED = 4 }; /* its list, nearest cell, `layer` */
+/* From the rows x + 65536 y of the nearest occupied cell of the layer. `wanted` (Optional): the x
+   that need it; `stale` (Optional): gets SDV__TURNED where that is news. */
+static void sdv__layer_columns(const sdv_grid *g, const uint32_t *rows, const unsigned char *wanted,
+                               uint32_t *out, unsigned char *stale) {
     uint32_t x, y, nx = g->size[0], ny = g->size[1];
     for (x = 0; x < nx; x++) {
         int32_t apart[SDV__AXIS], k = 0;
         uint32_t best[SDV__AXIS];
         sdv__envelope e;
+        if (wanted && !wanted[x]) {
+            continue;
+        }
         for (y = 0; y < ny; y++) {
-            int32_t d = (int32_t)out[(size_t)nx * y + x] - (int32_t)x;
-            best[y] = out[(size_t)nx * y + x];
+            int32_t d = (int32_t)rows[(size_t)nx * y + x] - (int32_t)x;
+            best[y] = rows[(size_t)nx * y + x];
             apart[y] = best[y] == SDV_NONE ? -1 : d * d;
         }
         sdv__envelope_make(&e, apart, (int32_t)ny);
-        for (y = 0; y < ny && e.count > 0; y++) {
-            k += (int32_t)y > e.until[k];
-            out[(size_t)nx * y + x] = best[e.place[k]] + 65536 * (uint32_t)e.place[k];
+        for (y = 0; y < ny; y++) {
+            uint32_t value = SDV_NONE;
+            if (e.count > 0) {
+                k += (int32_t)y > e.until[k];
+                value = best[e.place[k]] + 65536 * (uint32_t)e.place[k];
+            }
+            if (stale && out[(size_t)nx * y + x] != value) {
+                stale[(size_t)nx * y + x] |= SDV__TURNED;
+            }
+            out[(size_t)nx * y + x] = value;
         }
     }
 }
@@ -3755,11 +3958,11 @@ static void sdv__fill_layer(void *arg, uint32_t z) {
     }
     sdv__raster_binned(f, z, sdv__fill_cell);
     sdv__layer_rows(g, z, g->layer + first);
-    sdv__layer_columns(g, g->layer + first);
+    sdv__layer_columns(g, g->layer + first, NULL, g->layer + first, NULL);
 }
 
-/* The nearest occupied cell of a cell, `apart2` cells squared away. `stale` (Optional): gets bit 2
-   where that is news. */
+/* The nearest occupied cell of a cell, `apart2` cells squared away. `stale` (Optional): gets
+   SDV__NEARER where that is news. */
 static void sdv__nearest_write(sdv_grid *g, size_t cell, size_t nearest, int32_t apart2,
                                unsigned char *stale) {
     lao_v4 *c = g->cells + cell;
@@ -3767,18 +3970,18 @@ static void sdv__nearest_write(sdv_grid *g, size_t cell, size_t nearest, int32_t
         if (c->y == (float)nearest) {
             return;
         }
-        stale[cell] |= 2;
+        stale[cell] |= SDV__NEARER;
     }
     c->y = (float)nearest;
     if (!(c->w > 0.0f)) {
         c->z = sdv_far_step(lao_sqrt((float)apart2) * g->cell, g->cell);
     }
 }
-/* Columns along z at one y, 16 at a time: the nearest of all layers' nearest. `wanted` (Optional):
-   the x that need it. */
+/* Columns along z at one y, 16 at a time: the nearest of all layers' nearest. `wanted`, `layers`
+   (Optional): the columns and the z that need it. */
 enum { SDV__WIDE = 16 };
 static void sdv__column(sdv_grid *g, uint32_t x, uint32_t y, const uint32_t *best,
-                        unsigned char *stale) {
+                        const unsigned char *layers, unsigned char *stale) {
     int32_t apart[SDV__AXIS], k = 0;
     sdv__envelope e;
     uint32_t z, nz = g->size[2];
@@ -3793,6 +3996,9 @@ static void sdv__column(sdv_grid *g, uint32_t x, uint32_t y, const uint32_t *bes
         int32_t winner, dz;
         uint32_t cell;
         k += (int32_t)z > e.until[k];
+        if (layers && !layers[z]) {
+            continue;
+        }
         winner = e.place[k];
         dz = winner - (int32_t)z;
         cell = best[winner * SDV__WIDE];
@@ -3801,26 +4007,25 @@ static void sdv__column(sdv_grid *g, uint32_t x, uint32_t y, const uint32_t *bes
                            apart[winner] + dz * dz, stale);
     }
 }
-static void sdv__columns(sdv_grid *g, uint32_t y, const unsigned char *wanted,
-                         unsigned char *stale) {
-    uint32_t best[SDV__AXIS * SDV__WIDE], x0, x, z, nx = g->size[0];
-    for (x0 = 0; x0 < nx; x0 += SDV__WIDE) {
-        uint32_t wide = nx - x0 < SDV__WIDE ? nx - x0 : (uint32_t)SDV__WIDE;
-        if (wanted && !memchr(wanted + x0, 1, wide)) {
-            continue;
-        }
-        for (z = 0; z < g->size[2]; z++) {
-            memcpy(best + z * SDV__WIDE, g->layer + sdv__row(g, y, z) + x0, wide * sizeof *best);
-        }
-        for (x = x0; x < x0 + wide; x++) {
-            if (!wanted || wanted[x]) {
-                sdv__column(g, x, y, best + (x - x0), stale);
-            }
+static void sdv__columns(sdv_grid *g, uint32_t x0, uint32_t y, const unsigned char *wanted,
+                         const unsigned char *layers, unsigned char *stale) {
+    uint32_t best[SDV__AXIS * SDV__WIDE], i, z;
+    uint32_t wide = g->size[0] - x0 < SDV__WIDE ? g->size[0] - x0 : (uint32_t)SDV__WIDE;
+    for (z = 0; z < g->size[2]; z++) {
+        memcpy(best + z * SDV__WIDE, g->layer + sdv__row(g, y, z) + x0, wide * sizeof *best);
+    }
+    for (i = 0; i < wide; i++) {
+        if (!wanted || wanted[i]) {
+            sdv__column(g, x0 + i, y, best + i, layers, stale);
         }
     }
 }
 static void sdv__column_slab(void *arg, uint32_t y) {
-    sdv__columns(((sdv__fill *)arg)->grid, y, NULL, NULL);
+    sdv_grid *g = ((sdv__fill *)arg)->grid;
+    uint32_t x0;
+    for (x0 = 0; x0 < g->size[0]; x0 += SDV__WIDE) {
+        sdv__columns(g, x0, y, NULL, NULL, NULL);
+    }
 }
 
 /* ---- distances */
@@ -3839,25 +4044,18 @@ static float sdv__list_distance(const sdv_grid *g, const lao_v4 *cell, lao_v3 p,
     }
     return least;
 }
-/* Of the cells' centres to the list of their nearest occupied cell. `stale` (Optional): which cells
-   need it: those with bit 2, and those nearest to one with bit 1. */
-static void sdv__refine_layer(const sdv_grid *g, uint32_t z, const unsigned char *stale) {
+/* Of the cells' centres to the list of their nearest occupied cell. */
+static void sdv__refine_layer(void *arg, uint32_t z) {
+    const sdv_grid *g = ((const sdv__fill *)arg)->grid;
     sdv_box box = sdv__grid_box(g);
     uint32_t x, y, cone;
     for (y = 0; y < g->size[1]; y++) {
-        size_t row = sdv__row(g, y, z);
+        lao_v4 *row = g->cells + sdv__row(g, y, z);
         for (x = 0; x < g->size[0]; x++) {
-            lao_v4 *c = g->cells + row + x;
-            size_t nearest = (size_t)c->y;
-            if (!stale || (stale[row + x] & 2) || (stale[nearest] & 1)) {
-                c->x =
-                    sdv__list_distance(g, g->cells + nearest, sdv_cell_centre(box, x, y, z), &cone);
-            }
+            row[x].x = sdv__list_distance(g, g->cells + (size_t)row[x].y,
+                                          sdv_cell_centre(box, x, y, z), &cone);
         }
     }
-}
-static void sdv__refine_slab(void *arg, uint32_t z) {
-    sdv__refine_layer(((sdv__fill *)arg)->grid, z, NULL);
 }
 
 /* ---- building */
@@ -3922,13 +4120,13 @@ static lao_result sdv__grid_fill(sdv__work *work, sdv_grid *g, uint32_t *first,
     cancelled = sdv__run(work, g->size[2], sdv__count_layer, &f);
     if (!cancelled) {
         sum = sdv__layer_starts(g, layer_ids);
-        g->id_count = (uint32_t)sum;
+        g->id_count = g->id_room = (uint32_t)sum;
         g->ids = sum <= SDV__EXACT ? (float *)sdv__take(&g->allocator, sum, sizeof *g->ids) : NULL;
     }
     if (g->ids) {
         cancelled = sdv__run(work, g->size[2], sdv__fill_layer, &f) ||
                     sdv__run(work, g->size[1], sdv__column_slab, &f) ||
-                    sdv__run(work, g->size[2], sdv__refine_slab, &f);
+                    sdv__run(work, g->size[2], sdv__refine_layer, &f);
     }
     sdv__give(&g->allocator, binned);
     if (cancelled) {
@@ -3964,12 +4162,14 @@ SDV_API lao_result sdv_grid_build(const sdv_host *host, const sdv_tree *tree,
     g.allocator = sdv__allocator(host);
     g.cells = (lao_v4 *)sdv__take(&g.allocator, g.cell_count, sizeof *g.cells);
     g.layer = (uint32_t *)sdv__take(&g.allocator, g.cell_count, sizeof *g.layer);
+    g.occupied = (uint32_t *)sdv__take(
+        &g.allocator, (uint64_t)sdv__words(&g) * g.size[1] * g.size[2], sizeof *g.occupied);
     g.cones = (lao_v4 *)sdv__take(&g.allocator, 2 * (uint64_t)g.cone_count, sizeof *g.cones);
     g.cone_nodes =
         (uint32_t *)sdv__take(&g.allocator, 2 * (uint64_t)g.cone_count, sizeof *g.cone_nodes);
     first = (uint32_t *)sdv__take(&g.allocator, SDV__AXIS + 1, sizeof *first);
     layer_ids = (uint64_t *)sdv__take(&g.allocator, SDV__AXIS, sizeof *layer_ids);
-    if (g.cells && g.layer && g.cones && g.cone_nodes && first && layer_ids) {
+    if (g.cells && g.layer && g.occupied && g.cones && g.cone_nodes && first && layer_ids) {
         work.host = host;
         work.done = 0;
         work.total = 3 * (uint64_t)g.size[2] + g.size[1];
@@ -3993,6 +4193,7 @@ SDV_API void sdv_grid_free(sdv_grid *grid) {
     if (grid && grid->allocator.release) {
         sdv__give(&grid->allocator, grid->cells);
         sdv__give(&grid->allocator, grid->layer);
+        sdv__give(&grid->allocator, grid->occupied);
         sdv__give(&grid->allocator, grid->ids);
         sdv__give(&grid->allocator, grid->cones);
         sdv__give(&grid->allocator, grid->cone_nodes);
@@ -4001,32 +4202,66 @@ SDV_API void sdv_grid_free(sdv_grid *grid) {
 }
 
 /* ---- changing */
-/* Cells whose list may change are marked, then all lists are copied into a new array with the
-   changed ones merged in; what is nearest is found anew in the layers whose occupied cells changed,
-   and in the columns along z where that changed anything. */
+/* Cells whose lists change are found, lists are moved up and down in place, what is nearest is
+   found anew in the layers whose occupied cells change, and in those columns along z where that
+   matters. Blocks of cells that are nearer to others than to all that changes are left out from the
+   start. */
+enum { SDV__BLOCK = 8 };
 typedef struct sdv__change {
     sdv_grid *grid;
-    uint32_t *changed; /* cones, ascending */
-    lao_v4 *cones;     /* their new ends, 2 each */
+    uint32_t *changed;         /* cones, ascending */
+    lao_v4 *cones;             /* their new ends, 2 each; once the grid has those, the old ones */
+    unsigned char *is_changed; /* per cone */
     uint32_t changed_count;
-    unsigned char *stale;              /* per cell: 1: its list may change, 2: another is nearest */
-    unsigned char touched[SDV__AXIS];  /* per layer: it has cells with bit 1 */
-    unsigned char turned[SDV__AXIS];   /* per layer: its occupied cells changed */
-    uint32_t scratch_layer[SDV__AXIS]; /* per layer: place in scratch */
-    uint64_t layer_ids[SDV__AXIS];
-    uint32_t *scratch; /* new `layer` values of touched layers */
-    float *ids;
+    unsigned char *stale;       /* per cell: SDV__LISTED, ... */
+    unsigned char *close;       /* per block: something in it may change */
+    uint32_t blocks[3];         /* along each axis */
+    uint32_t *was;              /* occupied cells before */
+    uint32_t *rows, row_layers; /* nearest along x in the layers whose occupied cells change */
+    uint32_t row_layer[SDV__AXIS];
+    unsigned char turned[SDV__AXIS]; /* per layer: is it one of those? */
+    /* Cells whose list changes, layer by layer: the cell, the place and length of its old list, the
+       length of its new one and how far (entries) what lies before it moves. */
+    uint32_t *listed, *places, *olds, *news;
+    int32_t *moves;                    /* one more: of what lies behind the last */
+    uint32_t listed_in[SDV__AXIS + 1]; /* where a layer's begin */
+    uint64_t fresh_in[SDV__AXIS + 1];  /* and their new lists */
+    float *fresh;
+    float *ids; /* a larger array, where the grid's is too small */
+    uint32_t room;
 } sdv__change;
 
-static void sdv__mark_cell(void *arg, uint32_t cell, lao_v3 centre) {
-    (void)centre;
-    ((unsigned char *)arg)[cell] = 1;
+static lao_v3 sdv__centre(const sdv_grid *g, size_t cell) {
+    size_t row = cell / g->size[0];
+    return sdv_cell_centre(sdv__grid_box(g), (uint32_t)(cell - row * g->size[0]),
+                           (uint32_t)(row % g->size[1]), (uint32_t)(row / g->size[1]));
 }
-/* The new list of a marked cell: the old one without changed cones, and the changed ones that are
-   near enough, in order. Returns its length; `out` NULL: only that. */
-static uint32_t sdv__merge_list(const sdv__change *c, const lao_v4 *cell, lao_v3 centre,
-                                float *out) {
+/* Blocks at y and z, along x. */
+static const unsigned char *sdv__close_row(const sdv__change *c, uint32_t y, uint32_t z) {
+    return c->close + c->blocks[0] * (y / SDV__BLOCK + (size_t)c->blocks[1] * (z / SDV__BLOCK));
+}
+/* ---- which lists change */
+typedef struct sdv__marking {
+    const sdv__change *change;
+    const lao_v4 *cone;
+} sdv__marking;
+static void sdv__mark_cell(void *arg, uint32_t cell, lao_v3 centre) {
+    const sdv__marking *m = (const sdv__marking *)arg;
+    unsigned char *stale = m->change->stale + cell;
+    if (!*stale && sdv__is_listed(m->change->grid, centre, m->cone)) {
+        *stale = SDV__LISTED;
+    }
+}
+static size_t sdv__next_listed(const sdv__change *c, size_t cell, size_t end) {
+    const void *found = memchr(c->stale + cell, SDV__LISTED, end - cell);
+    return found ? (size_t)((const unsigned char *)found - c->stale) : end;
+}
+/* The new list of a cell: the old one without changed cones, and the changed ones that are near
+   enough, in order. Returns its length; `out` NULL: only that. */
+static uint32_t sdv__merge_list(const sdv__change *c, size_t index, float *out) {
     const sdv_grid *g = c->grid;
+    const lao_v4 *cell = g->cells + index;
+    lao_v3 centre = sdv__centre(g, index);
     uint32_t i = 0, k = 0, n = 0, old_count = (uint32_t)cell->w;
     const float *old = old_count ? g->ids + (size_t)cell->z : NULL;
     while (i < old_count || k < c->changed_count) {
@@ -4046,79 +4281,281 @@ static uint32_t sdv__merge_list(const sdv__change *c, const lao_v4 *cell, lao_v3
 static void sdv__mark_layer(void *arg, uint32_t z) {
     sdv__change *c = (sdv__change *)arg;
     const sdv_grid *g = c->grid;
-    sdv_box box = sdv__grid_box(g);
-    size_t n = sdv__layer_size(g), first = sdv__row(g, 0, z), i;
-    uint64_t sum = 0;
+    size_t first = sdv__row(g, 0, z), end = first + sdv__layer_size(g), cell;
+    sdv__marking m;
     uint32_t k;
-    memset(c->stale + first, 0, n);
+    m.change = c;
+    memset(c->stale + first, 0, end - first);
     for (k = 0; k < c->changed_count; k++) {
-        sdv__raster_layer(g, g->cones + 2 * (size_t)c->changed[k], z, sdv__mark_cell, c->stale);
-        sdv__raster_layer(g, c->cones + 2 * (size_t)k, z, sdv__mark_cell, c->stale);
+        m.cone = g->cones + 2 * (size_t)c->changed[k];
+        sdv__raster_layer(g, m.cone, z, sdv__mark_cell, &m);
+        m.cone = c->cones + 2 * (size_t)k;
+        sdv__raster_layer(g, m.cone, z, sdv__mark_cell, &m);
     }
-    c->touched[z] = memchr(c->stale + first, 1, n) != NULL;
-    for (i = 0; i < n; i++) {
-        const lao_v4 *cell = g->cells + first + i;
-        if (c->stale[first + i]) {
-            uint32_t x = (uint32_t)(i % g->size[0]), y = (uint32_t)(i / g->size[0]);
-            sum += sdv__merge_list(c, cell, sdv_cell_centre(box, x, y, z), NULL);
-        } else {
-            sum += (uint32_t)cell->w;
+    for (cell = sdv__next_listed(c, first, end); cell < end;
+         cell = sdv__next_listed(c, cell + 1, end)) {
+        uint32_t n = sdv__merge_list(c, cell, NULL);
+        c->turned[z] |= (n > 0) != (g->cells[cell].w > 0.0f);
+        c->listed_in[z]++;
+        c->fresh_in[z] += n;
+    }
+}
+static void sdv__merge_layer(void *arg, uint32_t z) {
+    sdv__change *c = (sdv__change *)arg;
+    const sdv_grid *g = c->grid;
+    size_t first = sdv__row(g, 0, z), end = first + sdv__layer_size(g), cell;
+    uint32_t i = c->listed_in[z];
+    uint64_t at = c->fresh_in[z];
+    for (cell = sdv__next_listed(c, first, end); cell < end;
+         cell = sdv__next_listed(c, cell + 1, end)) {
+        c->listed[i] = (uint32_t)cell;
+        c->olds[i] = (uint32_t)g->cells[cell].w;
+        c->news[i] = sdv__merge_list(c, cell, c->fresh + at);
+        at += c->news[i++];
+    }
+}
+/* Could anything in a block be nearest to a cell whose list changes? All cells of the block are
+   within `reach` of its middle, whose nearest cell is `apart` away: within apart + reach of each is
+   one that stays, unless it lists what changes. What lists it is within 2 cells of it. */
+static void sdv__close_blocks(void *arg, uint32_t bz) {
+    sdv__change *c = (sdv__change *)arg;
+    const sdv_grid *g = c->grid;
+    uint32_t b, k, axis, n = c->blocks[0] * c->blocks[1];
+    for (b = 0; b < n; b++) {
+        uint32_t at[3], middle[3];
+        double reach = 0, apart = 0;
+        size_t nearest;
+        float within;
+        lao_v3 p;
+        at[0] = b % c->blocks[0];
+        at[1] = b / c->blocks[0];
+        at[2] = bz;
+        for (axis = 0; axis < 3; axis++) {
+            uint32_t low = SDV__BLOCK * at[axis], end = g->size[axis] - low;
+            end = low + (end < SDV__BLOCK ? end : SDV__BLOCK);
+            middle[axis] = (low + end) / 2;
+            reach += (double)(middle[axis] - low) * (middle[axis] - low);
+        }
+        nearest = (size_t)g->cells[sdv__row(g, middle[1], middle[2]) + middle[0]].y;
+        for (axis = 0; axis < 3; axis++) {
+            double d = (double)(nearest % g->size[axis]) - middle[axis];
+            nearest /= g->size[axis];
+            apart += d * d;
+        }
+        p = sdv_cell_centre(sdv__grid_box(g), middle[0], middle[1], middle[2]);
+        within = (float)(sqrt(apart) + 2 * sqrt(reach) + 2.1) * g->cell;
+        c->close[(size_t)n * bz + b] = 0;
+        for (k = 0; k < c->changed_count && !c->close[(size_t)n * bz + b]; k++) {
+            const lao_v4 *old = g->cones + 2 * (size_t)c->changed[k],
+                         *fresh = c->cones + 2 * (size_t)k;
+            c->close[(size_t)n * bz + b] = sdv_round_cone(p, old[0], old[1]) < within ||
+                                           sdv_round_cone(p, fresh[0], fresh[1]) < within;
         }
     }
-    c->layer_ids[z] = sum;
+}
+
+/* ---- lists */
+/* Where the old lists are and how far everything moves. */
+static void sdv__place_lists(sdv__change *c, uint32_t count) {
+    const sdv_grid *g = c->grid;
+    uint32_t i, next = g->id_count;
+    size_t end = g->cell_count;
+    int32_t move = 0;
+    for (i = count; i-- > 0;) { /* an empty list lies where the next one begins */
+        size_t cell = c->listed[i];
+        if (!c->olds[i]) {
+            size_t row = cell / g->size[0], from = cell - row * g->size[0];
+            for (; row * g->size[0] < end; row++, from = 0) {
+                uint32_t x = sdv__next_bit(sdv__bits(g, row), (uint32_t)from, g->size[0]);
+                if (x < g->size[0]) {
+                    cell = row * g->size[0] + x;
+                    next = cell < end ? (uint32_t)g->cells[cell].z : next;
+                    break;
+                }
+            }
+        }
+        next = c->olds[i] ? (uint32_t)g->cells[cell].z : next;
+        end = c->listed[i];
+        c->places[i] = next;
+    }
+    for (i = 0; i < count; i++) {
+        c->moves[i] = move;
+        move += (int32_t)c->news[i] - (int32_t)c->olds[i];
+    }
+    c->moves[count] = move;
+}
+/* What lies between two changed lists, those that move up last to first, then those that move down
+   first to last: none is written where another is still to be read. */
+static void sdv__move_lists(const sdv__change *c, uint32_t count) {
+    float *ids = c->grid->ids;
+    const float *fresh = c->fresh;
+    uint32_t k, i;
+    for (k = 0; k < 2 * (count + 1); k++) {
+        uint32_t from, until;
+        int32_t move;
+        i = k <= count ? count - k : k - count - 1;
+        from = i > 0 ? c->places[i - 1] + c->olds[i - 1] : 0;
+        until = i < count ? c->places[i] : c->grid->id_count;
+        move = c->moves[i];
+        if (k <= count ? move > 0 : move < 0) {
+            memmove(ids + (int64_t)from + move, ids + from, (until - from) * sizeof *ids);
+        }
+    }
+    for (i = 0; i < count; i++) {
+        memcpy(ids + (int64_t)c->places[i] + c->moves[i], fresh, c->news[i] * sizeof *ids);
+        fresh += c->news[i];
+    }
+}
+/* Cells from .. until - 1: their lists have moved. */
+static void sdv__move_cells(const sdv_grid *g, size_t from, size_t until, int32_t move) {
+    size_t row = from / g->size[0];
+    uint32_t x = (uint32_t)(from - row * g->size[0]);
+    for (; move != 0 && from < until; row++, x = 0) {
+        lao_v4 *cells = g->cells + row * g->size[0];
+        uint32_t end = until - from < g->size[0] - x ? x + (uint32_t)(until - from) : g->size[0];
+        from += end - x;
+        for (x = sdv__next_bit(sdv__bits(g, row), x, end); x < end;
+             x = sdv__next_bit(sdv__bits(g, row), x + 1, end)) {
+            cells[x].z += (float)move;
+        }
+    }
 }
 static void sdv__relist_layer(void *arg, uint32_t z) {
     sdv__change *c = (sdv__change *)arg;
     sdv_grid *g = c->grid;
-    sdv_box box = sdv__grid_box(g);
-    size_t n = sdv__layer_size(g), first = sdv__row(g, 0, z), at = (size_t)c->layer_ids[z], i;
-    for (i = 0; i < n; i++) {
-        lao_v4 *cell = g->cells + first + i;
-        uint32_t count = (uint32_t)cell->w;
-        if (c->stale[first + i]) {
-            uint32_t x = (uint32_t)(i % g->size[0]), y = (uint32_t)(i / g->size[0]);
-            count = sdv__merge_list(c, cell, sdv_cell_centre(box, x, y, z), c->ids + at);
-            c->turned[z] |= (count > 0) != (cell->w > 0.0f);
-            cell->w = (float)count;
-        } else if (count > 0) {
-            memcpy(c->ids + at, g->ids + (size_t)cell->z, count * sizeof *c->ids);
+    size_t from = sdv__row(g, 0, z), until = from + sdv__layer_size(g);
+    uint32_t i;
+    for (i = c->listed_in[z]; i < c->listed_in[z + 1]; i++) {
+        lao_v4 *cell = g->cells + c->listed[i];
+        size_t row = c->listed[i] / g->size[0];
+        uint32_t x = c->listed[i] - (uint32_t)(row * g->size[0]);
+        sdv__move_cells(g, from, c->listed[i], c->moves[i]);
+        from = (size_t)c->listed[i] + 1;
+        cell->w = (float)c->news[i];
+        if (c->news[i]) {
+            cell->z = (float)((int64_t)c->places[i] + c->moves[i]);
+            sdv__bits(g, row)[x / 32] |= 1u << (x % 32);
+        } else {
+            sdv__bits(g, row)[x / 32] &= ~(1u << (x % 32));
         }
-        if (count > 0) {
-            cell->z = (float)at;
-        }
-        at += count;
     }
+    sdv__move_cells(g, from, until, c->moves[i]);
 }
+
+/* ---- what is nearest */
 static void sdv__renear_layer(void *arg, uint32_t z) {
     sdv__change *c = (sdv__change *)arg;
-    if (c->turned[z]) {
-        uint32_t *out = c->scratch + sdv__layer_size(c->grid) * c->scratch_layer[z];
-        sdv__layer_rows(c->grid, z, out);
-        sdv__layer_columns(c->grid, out);
+    const sdv_grid *g = c->grid;
+    uint32_t nx = g->size[0], x, y, before[SDV__AXIS];
+    unsigned char wanted[SDV__AXIS];
+    uint32_t *rows;
+    if (!c->turned[z]) {
+        return;
     }
+    rows = c->rows + sdv__layer_size(g) * c->row_layer[z];
+    memset(wanted, 0, sizeof wanted);
+    sdv__layer_rows(g, z, rows);
+    for (y = 0; y < g->size[1]; y++) {
+        size_t row = y + (size_t)g->size[1] * z;
+        const uint32_t *was = c->was + sdv__words(g) * row;
+        if (memcmp(was, sdv__bits(g, row), sdv__words(g) * sizeof *was) != 0) {
+            sdv__row_nearest(was, nx, before);
+            for (x = 0; x < nx; x++) {
+                wanted[x] |= before[x] != rows[(size_t)nx * y + x];
+            }
+        }
+    }
+    sdv__layer_columns(g, rows, wanted, g->layer + sdv__row(g, 0, z), c->stale + sdv__row(g, 0, z));
+}
+/* The z of a group of columns that lie in close blocks; 0: none. */
+static int sdv__close_layers(const sdv__change *c, uint32_t x0, uint32_t y, unsigned char *layers) {
+    uint32_t z, last = x0 + SDV__WIDE - 1, any = 0;
+    last = last < c->grid->size[0] ? last : c->grid->size[0] - 1;
+    for (z = 0; z < c->grid->size[2]; z++) {
+        const unsigned char *row = sdv__close_row(c, y, z);
+        layers[z] = row[x0 / SDV__BLOCK] | row[last / SDV__BLOCK];
+        any |= layers[z];
+    }
+    return any != 0;
 }
 static void sdv__renear_slab(void *arg, uint32_t y) {
     sdv__change *c = (sdv__change *)arg;
     sdv_grid *g = c->grid;
-    unsigned char wanted[SDV__AXIS];
-    uint32_t x, z;
-    memset(wanted, 0, sizeof wanted);
-    for (z = 0; z < g->size[2]; z++) {
-        uint32_t *row = g->layer + sdv__row(g, y, z);
-        const uint32_t *fresh = c->scratch + sdv__layer_size(g) * c->scratch_layer[z];
-        for (x = 0; c->turned[z] && x < g->size[0]; x++) {
-            uint32_t value = fresh[(size_t)g->size[0] * y + x];
-            wanted[x] |= row[x] != value;
-            row[x] = value;
+    unsigned char wanted[SDV__WIDE], layers[SDV__AXIS];
+    uint32_t x0, i, z;
+    for (x0 = 0; x0 < g->size[0]; x0 += SDV__WIDE) {
+        uint32_t wide = g->size[0] - x0 < SDV__WIDE ? g->size[0] - x0 : (uint32_t)SDV__WIDE;
+        memset(wanted, 0, sizeof wanted);
+        if (!sdv__close_layers(c, x0, y, layers)) {
+            continue;
+        }
+        for (z = 0; z < g->size[2]; z++) {
+            const unsigned char *stale = c->stale + sdv__row(g, y, z) + x0;
+            for (i = 0; c->turned[z] && i < wide; i++) {
+                wanted[i] |= stale[i] & SDV__TURNED;
+            }
+        }
+        if (memchr(wanted, SDV__TURNED, wide)) {
+            sdv__columns(g, x0, y, wanted, layers, c->stale);
         }
     }
-    sdv__columns(g, y, wanted, c->stale);
+}
+
+/* ---- distances */
+/* Of a place whose nearest cell is as before but lists something else. What did not change is no
+   nearer than all was before. */
+static float sdv__changed_distance(const sdv__change *c, const lao_v4 *cell, lao_v3 p,
+                                   float before) {
+    const sdv_grid *g = c->grid;
+    const float *ids = g->ids + (size_t)cell->z;
+    uint32_t i, k, n = (uint32_t)cell->w, cone;
+    float least = SDV_FAR;
+    for (i = 0; i < n; i++) {
+        if (c->is_changed[(size_t)ids[i]]) {
+            const lao_v4 *ends = g->cones + 2 * (size_t)ids[i];
+            float d = sdv_round_cone(p, ends[0], ends[1]);
+            least = d < least ? d : least;
+        }
+    }
+    if (least <= before) {
+        return least;
+    }
+    for (k = 0; k < c->changed_count; k++) {
+        const lao_v4 *ends = c->cones + 2 * (size_t)k;
+        if (sdv_round_cone(p, ends[0], ends[1]) <= before) {
+            return sdv__list_distance(g, cell, p, &cone);
+        }
+    }
+    return before;
 }
 static void sdv__rerefine_layer(void *arg, uint32_t z) {
     const sdv__change *c = (const sdv__change *)arg;
-    sdv__refine_layer(c->grid, z, c->stale);
+    const sdv_grid *g = c->grid;
+    sdv_box box = sdv__grid_box(g);
+    uint32_t x, y, cone;
+    for (y = 0; y < g->size[1]; y++) {
+        size_t row = sdv__row(g, y, z);
+        const unsigned char *close = sdv__close_row(c, y, z);
+        for (x = 0; x < g->size[0]; x++) {
+            lao_v4 *cell = g->cells + row + x;
+            size_t nearest;
+            if (!close[x / SDV__BLOCK]) {
+                x |= SDV__BLOCK - 1;
+                continue;
+            }
+            nearest = (size_t)cell->y;
+            if (c->stale[row + x] & SDV__NEARER) {
+                cell->x =
+                    sdv__list_distance(g, g->cells + nearest, sdv_cell_centre(box, x, y, z), &cone);
+            } else if (c->stale[nearest] & SDV__LISTED) {
+                cell->x = sdv__changed_distance(c, g->cells + nearest,
+                                                sdv_cell_centre(box, x, y, z), cell->x);
+            }
+        }
+    }
 }
 
+/* ---- all of it */
 /* The cones at the nodes, with their new ends. 0: no memory. */
 static int sdv__changed_cones(const sdv_tree *tree, const uint32_t *nodes, uint32_t count,
                               sdv__change *c) {
@@ -4126,64 +4563,122 @@ static int sdv__changed_cones(const sdv_tree *tree, const uint32_t *nodes, uint3
     const lao_allocator *a = &g->allocator;
     unsigned char *moved = (unsigned char *)sdv__take(a, tree->node_count, 1);
     uint32_t i, n = 0;
-    if (!moved) {
-        return 0;
+    c->is_changed = (unsigned char *)sdv__take(a, g->cone_count, 1);
+    if (moved && c->is_changed) {
+        memset(moved, 0, tree->node_count);
+        for (i = 0; i < count; i++) {
+            moved[nodes[i]] = 1;
+        }
+        for (i = 0; i < g->cone_count; i++) {
+            const uint32_t *ends = g->cone_nodes + 2 * (size_t)i;
+            c->is_changed[i] = moved[ends[0]] || moved[ends[1]];
+            c->changed_count += c->is_changed[i];
+        }
+        c->changed = (uint32_t *)sdv__take(a, c->changed_count, sizeof *c->changed);
+        c->cones = (lao_v4 *)sdv__take(a, 2 * (uint64_t)c->changed_count, sizeof *c->cones);
     }
-    memset(moved, 0, tree->node_count);
-    for (i = 0; i < count; i++) {
-        moved[nodes[i]] = 1;
-    }
-    for (i = 0; i < g->cone_count; i++) {
-        const uint32_t *ends = g->cone_nodes + 2 * (size_t)i;
-        c->changed_count += moved[ends[0]] || moved[ends[1]];
-    }
-    c->changed = (uint32_t *)sdv__take(a, c->changed_count, sizeof *c->changed);
-    c->cones = (lao_v4 *)sdv__take(a, 2 * (uint64_t)c->changed_count, sizeof *c->cones);
     for (i = 0; c->changed && c->cones && i < g->cone_count; i++) {
-        const uint32_t *ends = g->cone_nodes + 2 * (size_t)i;
-        if (moved[ends[0]] || moved[ends[1]]) {
+        if (c->is_changed[i]) {
             c->changed[n] = i;
-            sdv__cone_set(tree, ends, c->cones + 2 * (size_t)n++);
+            sdv__cone_set(tree, g->cone_nodes + 2 * (size_t)i, c->cones + 2 * (size_t)n++);
         }
     }
     sdv__give(a, moved);
     return c->changed && c->cones;
 }
-
-/* Everything up to the point where nothing can fail any more. */
+/* What marking has counted becomes where each layer begins. Returns the number of lists. */
+static uint32_t sdv__change_sizes(sdv__change *c) {
+    const sdv_grid *g = c->grid;
+    uint32_t z, lists = 0;
+    uint64_t fresh = 0;
+    for (z = 0; z <= g->size[2]; z++) {
+        uint32_t n = c->listed_in[z];
+        uint64_t m = c->fresh_in[z];
+        c->listed_in[z] = lists;
+        c->fresh_in[z] = fresh;
+        lists += n;
+        fresh += m;
+        if (z < g->size[2]) {
+            c->row_layer[z] = c->row_layers;
+            c->row_layers += c->turned[z];
+        }
+    }
+    return lists;
+}
+static int sdv__change_memory(sdv__change *c, uint32_t lists) {
+    const sdv_grid *g = c->grid;
+    const lao_allocator *a = &g->allocator;
+    uint64_t words = (uint64_t)sdv__words(g) * g->size[1] * g->size[2];
+    c->listed = (uint32_t *)sdv__take(a, 4 * (uint64_t)lists, sizeof *c->listed);
+    c->moves = (int32_t *)sdv__take(a, (uint64_t)lists + 1, sizeof *c->moves);
+    c->fresh = (float *)sdv__take(a, c->fresh_in[g->size[2]], sizeof *c->fresh);
+    c->rows =
+        (uint32_t *)sdv__take(a, c->row_layers * (uint64_t)sdv__layer_size(g), sizeof *c->rows);
+    c->was = (uint32_t *)sdv__take(a, words, sizeof *c->was);
+    if (!c->listed || !c->moves || !c->fresh || !c->rows || !c->was) {
+        return 0;
+    }
+    c->places = c->listed + lists;
+    c->olds = c->places + lists;
+    c->news = c->olds + lists;
+    memcpy(c->was, g->occupied, (size_t)words * sizeof *c->was);
+    return 1;
+}
+/* Everything up to the point where nothing can fail any more. *sum: entries of all lists. */
 static lao_result sdv__change_prepare(sdv__work *work, sdv__change *c, uint64_t *sum) {
     sdv_grid *g = c->grid;
     const lao_allocator *a = &g->allocator;
-    uint32_t z, layers = 0;
+    uint32_t k, lists;
+    for (k = 0; k < 3; k++) {
+        c->blocks[k] = (g->size[k] + SDV__BLOCK - 1) / SDV__BLOCK;
+    }
     c->stale = (unsigned char *)sdv__take(a, g->cell_count, 1);
-    if (!c->stale) {
+    c->close =
+        (unsigned char *)sdv__take(a, (uint64_t)c->blocks[0] * c->blocks[1] * c->blocks[2], 1);
+    if (!c->stale || !c->close) {
         return sdv__fail(work->host, SDV_LOG_MEMORY, "changing a grid");
     }
     if (sdv__run(work, g->size[2], sdv__mark_layer, c)) {
         return sdv__fail(work->host, SDV_LOG_CANCELLED, "changing a grid");
     }
-    *sum = sdv__layer_starts(g, c->layer_ids);
-    for (z = 0; z < g->size[2]; z++) {
-        c->scratch_layer[z] = layers;
-        layers += c->touched[z];
+    lists = sdv__change_sizes(c);
+    if (!sdv__change_memory(c, lists)) {
+        return sdv__fail(work->host, SDV_LOG_MEMORY, "changing a grid");
     }
+    if (sdv__run(work, g->size[2], sdv__merge_layer, c)) {
+        return sdv__fail(work->host, SDV_LOG_CANCELLED, "changing a grid");
+    }
+    sdv__place_lists(c, lists);
+    *sum = (uint64_t)((int64_t)g->id_count + c->moves[lists]);
     if (*sum > SDV__EXACT) {
         return sdv__fail(work->host, SDV_LOG_GRID_LISTS, "%llu entries", (unsigned long long)*sum);
     }
-    c->ids = (float *)sdv__take(a, *sum, sizeof *c->ids);
-    c->scratch = (uint32_t *)sdv__take(a, layers * (uint64_t)sdv__layer_size(g), sizeof(uint32_t));
-    return c->ids && c->scratch ? LAO_OK : sdv__fail(work->host, SDV_LOG_MEMORY, "changing a grid");
+    if (*sum > g->id_room) { /* and some more, for the changes to come */
+        c->room = (uint32_t)(*sum + *sum / 8);
+        c->ids = (float *)sdv__take(a, c->room, sizeof *c->ids);
+        if (!c->ids) {
+            return sdv__fail(work->host, SDV_LOG_MEMORY, "changing a grid");
+        }
+    }
+    return LAO_OK;
 }
 static void sdv__change_apply(sdv__work *work, sdv__change *c) {
     sdv_grid *g = c->grid;
-    float *old = g->ids;
     uint32_t k;
+    (void)sdv__run(work, c->blocks[2], sdv__close_blocks, c);
+    if (c->ids) {
+        float *old = g->ids;
+        memcpy(c->ids, old, g->id_count * sizeof *old);
+        g->ids = c->ids;
+        g->id_room = c->room;
+        c->ids = old;
+    }
+    sdv__move_lists(c, c->listed_in[g->size[2]]);
     (void)sdv__run(work, g->size[2], sdv__relist_layer, c);
-    g->ids = c->ids;
-    c->ids = old;
-    for (k = 0; k < c->changed_count; k++) {
-        memcpy(g->cones + 2 * (size_t)c->changed[k], c->cones + 2 * (size_t)k,
-               2 * sizeof *g->cones);
+    for (k = 0; k < 2 * c->changed_count; k++) {
+        lao_v4 *end = g->cones + 2 * (size_t)c->changed[k / 2] + k % 2, old = *end;
+        *end = c->cones[k];
+        c->cones[k] = old;
     }
     (void)sdv__run(work, g->size[2], sdv__renear_layer, c);
     (void)sdv__run(work, g->size[1], sdv__renear_slab, c);
@@ -4200,7 +4695,8 @@ static lao_result sdv__grid_change(const sdv_host *host, const sdv_tree *tree,
     c.grid = grid;
     work.host = host;
     work.done = 0;
-    work.total = 4 * (uint64_t)grid->size[2] + grid->size[1];
+    work.total =
+        5 * (uint64_t)grid->size[2] + grid->size[1] + (grid->size[2] + SDV__BLOCK - 1) / SDV__BLOCK;
     if (sdv__changed_cones(tree, nodes, count, &c)) {
         result = sdv__change_prepare(&work, &c, &sum);
     } else {
@@ -4218,8 +4714,14 @@ static lao_result sdv__grid_change(const sdv_host *host, const sdv_tree *tree,
     }
     sdv__give(&grid->allocator, c.changed);
     sdv__give(&grid->allocator, c.cones);
+    sdv__give(&grid->allocator, c.is_changed);
     sdv__give(&grid->allocator, c.stale);
-    sdv__give(&grid->allocator, c.scratch);
+    sdv__give(&grid->allocator, c.close);
+    sdv__give(&grid->allocator, c.listed);
+    sdv__give(&grid->allocator, c.moves);
+    sdv__give(&grid->allocator, c.fresh);
+    sdv__give(&grid->allocator, c.rows);
+    sdv__give(&grid->allocator, c.was);
     sdv__give(&grid->allocator, c.ids);
     return result;
 }
@@ -5119,6 +5621,7 @@ SDV_API lao_result sdv_pull_push(const sdv_host *host, const sdv_pull_push_desc 
 #define SDV__TREE {"#vessel_cones", '>', 0}, {"#vessel_shapes", '=', 0}
 #define SDV__SHAPES {"#vessel_cones", '>', 0}, {"#vessel_shapes", '>', 0}
 #define SDV__SEEN {"#vessel_box", '>', 0}, {"#vessel_cones", '=', 0}
+#define SDV__DRAWN {SDV__SEEN, {"#vessel_triangles", '=', 0}}
 #define SDV__WITH_TREE {SDV__TREE}
 #define SDV__WITH_SHAPES {SDV__SHAPES}
 /* sdv_object_make_tree: the object has no cells of its own */
@@ -5161,6 +5664,7 @@ static const lao_image_row sdv__images[] = {
     {"vessel_ray",      LAO_FORMAT_RGBA32F, LAO_SIZE_FULL, 0, 0, NULL, 0, LAO_ENCODING_PLAIN, {0, 0, 0, 0},  {NULL, 0, 0}, {NULL, NULL, NULL, NULL}},
     {"vessel_color",    LAO_FORMAT_RGBA8,   LAO_SIZE_FULL, 0, 0, NULL, 0, LAO_ENCODING_PLAIN, {0, 0, 0, 0},  {NULL, 0, 0}, {NULL, NULL, NULL, NULL}},
     {"vessel_direction", LAO_FORMAT_RGBA32F, LAO_SIZE_FULL, 0, 0, NULL, 0, LAO_ENCODING_PLAIN, {0, 0, 0, 0}, {"guide", '>', 0}, {NULL, NULL, NULL, NULL}},
+    {"vessel_drawn_depth", LAO_FORMAT_HOST, LAO_SIZE_FULL, 0, 0, NULL, LAO_IMAGE_IMPORT, LAO_ENCODING_PLAIN, {0, 0, 0, 0}, {NULL, 0, 0}, {NULL, NULL, NULL, NULL}},
     {"vessel_z",        LAO_FORMAT_D32F,    LAO_SIZE_FULL, 0, 0, NULL, 0, LAO_ENCODING_PLAIN, {1, 0, 0, 0},  {NULL, 0, 0}, {NULL, NULL, NULL, NULL}},
     /* where there is a parameterization: of pyramids, levels down to one texel; what each holds stands in its shader */
     {"vessel_depth", LAO_FORMAT_RGBA32F, LAO_SIZE_FULL, 0, 0, "*", 0, LAO_ENCODING_PLAIN, {0, 0, 0, 0}, SDV__BACKGROUND, {NULL, NULL, NULL, NULL}},
@@ -5247,6 +5751,16 @@ static const lao_pass_row sdv__passes[] = {
     {"vessel_mesh", LAO_PASS_DRAW_MESH, "vessel_mesh", 0, LAO_STAGE_DRAW, LAO_SCOPE_PER_SET, LAO_REPEAT_NONE, NULL, LAO_BLEND_NONE, LAO_DEPTH_NEARER, LAO_CULL_NONE, {{"#vessel_triangles", '>', 0}},
      {SDV__CLEAR("vessel_position"), SDV__CLEAR("vessel_normal"), SDV__CLEAR("vessel_color"), SDV__CLEAR("vessel_direction"), SDV__CLEAR("vessel_z")},
      {SDV__READ("#vessel_vertices"), SDV__READ("#vessel_triangles"), SDV__READ("#vessel_colors")}},
+    /* of a surface that the host drew what it does not bring itself */
+    {"vessel_drawn_place", LAO_PASS_FULLSCREEN, "vessel_drawn", 0, LAO_STAGE_DRAW, LAO_SCOPE_PER_SET, LAO_REPEAT_NONE, NULL, LAO_BLEND_NONE, LAO_DEPTH_NONE, LAO_CULL_NONE, SDV__DRAWN,
+     {SDV__WRITE("vessel_position")},
+     {SDV__READ("vessel_drawn_depth")}},
+    {"vessel_drawn_normal", LAO_PASS_FULLSCREEN, "vessel_drawn", 1, LAO_STAGE_DRAW, LAO_SCOPE_PER_SET, LAO_REPEAT_NONE, NULL, LAO_BLEND_NONE, LAO_DEPTH_NONE, LAO_CULL_NONE, SDV__DRAWN,
+     {SDV__WRITE("vessel_normal")},
+     {SDV__READ("vessel_position")}},
+    {"vessel_drawn_color", LAO_PASS_FULLSCREEN, "vessel_drawn", 2, LAO_STAGE_DRAW, LAO_SCOPE_PER_SET, LAO_REPEAT_NONE, NULL, LAO_BLEND_NONE, LAO_DEPTH_NONE, LAO_CULL_NONE, SDV__DRAWN,
+     {SDV__WRITE("vessel_color")},
+     {SDV__READ("vessel_position")}},
     /* the void: depth pulled up and pushed down, then a place and a normal for every pixel (L19 3.4) */
     {"vessel_depth", LAO_PASS_FULLSCREEN, "vessel_depth", 0, LAO_STAGE_SHADE, LAO_SCOPE_PER_SET, LAO_REPEAT_NONE, NULL, LAO_BLEND_NONE, LAO_DEPTH_NONE, LAO_CULL_NONE, SDV__WITH_BACKGROUND,
      {SDV__WRITE("vessel_depth")},
@@ -5301,25 +5815,22 @@ static const lao_pass_row sdv__passes[] = {
     /* strokes and dots, where phases changed faded over */
     {"vessel_ink", LAO_PASS_FULLSCREEN, "vessel_ink", 0, LAO_STAGE_SHADE, LAO_SCOPE_PER_SET, LAO_REPEAT_NONE, NULL, LAO_BLEND_NONE, LAO_DEPTH_NONE, LAO_CULL_NONE, {SDV__TREE, SDV__PARAMETERIZED},
      {SDV__WRITE("vessel_ink")},
-     {SDV__READ("vessel_position"), SDV__READ("vessel_normal"), SDV__READ("vessel_ray"),
+     {SDV__READ("vessel_surface"), SDV__READ("vessel_bgnormal"), SDV__READ("vessel_normal"), SDV__READ("vessel_ray"),
       SDV__READ("#vessel_box"), SDV__READ("#vessel_cells"), SDV__READ("#vessel_ids"), SDV__READ("#vessel_cones"),
-      SDV__READ("#vessel_shapes"), SDV__READ("#vessel_fields"), SDV__READ("vessel_uv"), SDV__READ("vessel_surface"),
-      SDV__READ("vessel_bgnormal"), SDV__READ("vessel_along"), SDV__READ("vessel_across"), SDV__READ("vessel_recalled"), SDV__READ("#vessel_pattern"), SDV__READ("#vessel_colors"),
-      SDV__READ("vessel_grid"), SDV__READ("vessel_lists")}},
+      SDV__READ("#vessel_shapes"), SDV__READ("#vessel_fields"), SDV__READ("vessel_uv"), SDV__READ("vessel_recalled"),
+      SDV__READ("#vessel_pattern"), SDV__READ("#vessel_colors"), SDV__READ("vessel_grid"), SDV__READ("vessel_lists")}},
     {"vessel_ink_cut", LAO_PASS_FULLSCREEN, "vessel_ink", 1, LAO_STAGE_SHADE, LAO_SCOPE_PER_SET, LAO_REPEAT_NONE, NULL, LAO_BLEND_NONE, LAO_DEPTH_NONE, LAO_CULL_NONE, {SDV__SHAPES, SDV__PARAMETERIZED},
      {SDV__WRITE("vessel_ink")},
-     {SDV__READ("vessel_position"), SDV__READ("vessel_normal"), SDV__READ("vessel_ray"),
+     {SDV__READ("vessel_surface"), SDV__READ("vessel_bgnormal"), SDV__READ("vessel_normal"), SDV__READ("vessel_ray"),
       SDV__READ("#vessel_box"), SDV__READ("#vessel_cells"), SDV__READ("#vessel_ids"), SDV__READ("#vessel_cones"),
-      SDV__READ("#vessel_shapes"), SDV__READ("#vessel_fields"), SDV__READ("vessel_uv"), SDV__READ("vessel_surface"),
-      SDV__READ("vessel_bgnormal"), SDV__READ("vessel_along"), SDV__READ("vessel_across"), SDV__READ("vessel_recalled"), SDV__READ("#vessel_pattern"), SDV__READ("#vessel_colors"),
-      SDV__READ("vessel_grid"), SDV__READ("vessel_lists")}},
+      SDV__READ("#vessel_shapes"), SDV__READ("#vessel_fields"), SDV__READ("vessel_uv"), SDV__READ("vessel_recalled"),
+      SDV__READ("#vessel_pattern"), SDV__READ("#vessel_colors"), SDV__READ("vessel_grid"), SDV__READ("vessel_lists")}},
     {"vessel_ink_seen", LAO_PASS_FULLSCREEN, "vessel_ink", 2, LAO_STAGE_SHADE, LAO_SCOPE_PER_SET, LAO_REPEAT_NONE, NULL, LAO_BLEND_NONE, LAO_DEPTH_NONE, LAO_CULL_NONE, {SDV__SEEN, SDV__PARAMETERIZED},
      {SDV__WRITE("vessel_ink")},
-     {SDV__READ("vessel_position"), SDV__READ("vessel_normal"), SDV__READ("vessel_normal"),
+     {SDV__READ("vessel_surface"), SDV__READ("vessel_bgnormal"), SDV__READ("vessel_normal"), SDV__READ("vessel_normal"),
       SDV__READ("#vessel_box"), SDV__READ("#vessel_cells"), SDV__READ("#vessel_ids"), SDV__READ("#vessel_cones"),
-      SDV__READ("#vessel_shapes"), SDV__READ("#vessel_fields"), SDV__READ("vessel_uv"), SDV__READ("vessel_surface"),
-      SDV__READ("vessel_bgnormal"), SDV__READ("vessel_along"), SDV__READ("vessel_across"), SDV__READ("vessel_recalled"), SDV__READ("#vessel_pattern"), SDV__READ("#vessel_colors"),
-      SDV__READ("vessel_normal"), SDV__READ("vessel_normal")}},
+      SDV__READ("#vessel_shapes"), SDV__READ("#vessel_fields"), SDV__READ("vessel_uv"), SDV__READ("vessel_recalled"),
+      SDV__READ("#vessel_pattern"), SDV__READ("#vessel_colors"), SDV__READ("vessel_normal"), SDV__READ("vessel_normal")}},
     {"vessel_shade", LAO_PASS_FULLSCREEN, "vessel_shade", 0, LAO_STAGE_SHADE, LAO_SCOPE_PER_SET, LAO_REPEAT_NONE, NULL, LAO_BLEND_NONE, LAO_DEPTH_NEARER, LAO_CULL_NONE, SDV__WITH_TREE,
      {SDV__KEEP("shaded"), SDV__KEEP("zbuffer")},
      {SDV__READ("vessel_position"), SDV__READ("vessel_normal"), SDV__READ("vessel_ray"), SDV__READ("#vessel_colors"),

@@ -3,10 +3,12 @@
    halo none needs neither, and writing depth costs the early depth test. */
 LAO_TEX(0, samplerBuffer, points)
 LAO_TEX(1, samplerBuffer, colors)
+LAO_TEX(2, samplerBuffer, order) /* of segments in time, where the lines have times */
 LAO_CONSTANT(0, lao_constant_trail)
 LAO_CONSTANT(1, lao_constant_halo)
 LAO_CONSTANT(2, lao_constant_halo_function)
 LAO_CONSTANT(3, lao_constant_halo_border)
+LAO_CONSTANT(4, lao_constant_has_order)
 
 LAO_VARYING(0, vec4, tangent_zoom)
 LAO_VARYING(1, vec4, color_depth) /* red, green, blue; view depth (mm) */
@@ -79,7 +81,11 @@ lao_v2 neighbour_of(segment_part s, segment_end end, bool at_end, lao_v3 corner)
 
 void main() {
     segment_part s;
-    s.first = int(LAO_VERTEX_INDEX >> 2u) + 1;
+    int segment = int(LAO_VERTEX_INDEX >> 2u);
+    if (trailing && lao_constant_has_order == 1) {
+        segment = int(texelFetch(order, segment).x);
+    }
+    s.first = segment + 1;
     bool at_end = (LAO_VERTEX_INDEX & 2u) != 0u;
     float side = (LAO_VERTEX_INDEX & 1u) != 0u ? 1.0 : -1.0;
     vec4 start = texelFetch(points, s.first);

@@ -8,14 +8,13 @@ LAO_TEX(5, usampler2D, level4)
 LAO_TEX(6, usampler2D, level5)
 LAO_TEX(7, usampler2D, level6)
 LAO_TEX(8, usampler2D, level7)
-LAO_TEX(9, sampler2D, tangent0)
-LAO_TEX(10, sampler2D, tangent1)
-LAO_TEX(11, sampler2D, tangent2)
-LAO_TEX(12, sampler2D, tangent3)
-LAO_TEX(13, sampler2D, tangent4)
-LAO_TEX(14, sampler2D, tangent5)
-LAO_TEX(15, sampler2D, tangent6)
-LAO_TEX(16, sampler2D, tangent7)
+LAO_TEX(9, sampler2D, tangent1)
+LAO_TEX(10, sampler2D, tangent2)
+LAO_TEX(11, sampler2D, tangent3)
+LAO_TEX(12, sampler2D, tangent4)
+LAO_TEX(13, sampler2D, tangent5)
+LAO_TEX(14, sampler2D, tangent6)
+LAO_TEX(15, sampler2D, tangent7)
 LAO_CONSTANT(0, lao_constant_align)
 LAO_CONSTANT(1, lao_constant_light)
 LAO_CONSTANT(2, lao_constant_levels)
@@ -42,6 +41,7 @@ struct lao_gather {
     float least;
     float slope;      /* of the depth weight */
     float align_floor; /* 1 where the centre has no direction */
+    bool finest;       /* its tangents are the G-buffer's */
 };
 
 lao_gather lao_gather_make(usampler2D words, lao_centre c, uint level) {
@@ -60,6 +60,7 @@ lao_gather lao_gather_make(usampler2D words, lao_centre c, uint level) {
     g.least = lao_constant_strict_zero != 0 ? -threshold : 0.0;
     g.slope = slope;
     g.align_floor = lao_level_known(g.centre) ? lao_setting_align_floor : 1.0;
+    g.finest = level == 0u;
     return g;
 }
 
@@ -80,7 +81,11 @@ vec2 lao_sample_weight(sampler2D tangents, lao_centre c, lao_gather g, lao_v3 di
             weight = weight *
                      lao_light_weight(c.diffuse, tap.n_omega, specular, tap.r_omega, lao_constant_light_exponent);
         } else {
-            lao_v3 occluder = lao_signed_unpack(textureLod(tangents, tap.at, 0.0));
+            vec4 texel = textureLod(tangents, tap.at, 0.0);
+            lao_v3 occluder = texel.xyz;
+            if (!g.finest) {
+                occluder = lao_signed_unpack(texel);
+            }
             lao_v3 omega = lao_v3_scale(lao_mirror(direction, c.noise), lao_turned(1.0, tap.side));
             weight = weight *
                      lao_light_weight_author(omega, tap.n_omega, occluder, c.l, lao_constant_light_exponent);

@@ -60,7 +60,8 @@ static const flag_row flags[] = {
     {"--out", "-o", "FILE.png", FLAG_TEXT, CLI_VESSEL, ALL(out), NULL, "the picture; of several cameras or frames a pattern (out_%04d.png, first = 0) or a video"},
     {"--style", NULL, "NAME", FLAG_CHOICE, CLI_VESSEL, ALL(vessel.style), CLI_STYLES, "a set of settings: default, plain (light alone), ink (flat colours and outlines), glow (soft, no outlines), stipple, hatch, crosshatch, layered (ink that follows the vessels), shadow (hatched depth shadows) or void (depth as colour behind them)"},
     {"--grid", NULL, "N", FLAG_COUNT, CLI_VESSEL, ALL(vessel.grid), NULL, "cells of the distance field along its longest axis, 16..512 (128)"},
-    {"--layout", NULL, "FILE", FLAG_LAYOUT, CLI_VESSEL, ALL(vessel.layout), NULL, "the tree in 2D: a drawing (.svg) or numbers (.json); give it twice for both"},
+    {"--field", NULL, "NAME", FLAG_CHOICE, CLI_VESSEL, ALL(vessel.field), "cpu|device", "who builds the distance field, to the same bits: cpu (default), once, or device (the backend, in every frame, as for a tree that moves)"},
+    {"--layout", NULL, "FILE", FLAG_LAYOUT, CLI_VESSEL, ALL(vessel.layout), NULL, "the tree in 2D: drawn by the backend (.png), as lines (.svg) or numbers (.json); give it once for each"},
     {"--layout-weight", NULL, "NAME", FLAG_TEXT, CLI_VESSEL, ALL(vessel.weight), NULL, "lay out by this attribute of the nodes, by radius, or by how near they are to the --path or --target (near), instead of by their number"},
     {"--tree", NULL, "FILE.json", FLAG_TEXT, CLI_VESSEL, ALL(vessel.tree), NULL, "nodes and segments as they are drawn; segment.V of a dump counts these"},
     {"--path", NULL, "X,Y,Z:X,Y,Z...", FLAG_TARGET, CLI_VESSEL, ALL(vessel.targets), "path", "distances of the vessels to a path through these points (mm): a needle"},
@@ -88,6 +89,7 @@ static const flag_row flags[] = {
     {"--flip", NULL, "on|off", FLAG_CHOICE, CLI_SURFACE, ALL(surface.flip), "on|off", "turn the MESH inside out, or leave an open one that seems to be so (closed ones never are)"},
     {"--smooth", NULL, "N", FLAG_COUNT, CLI_SURFACE, ALL(surface.smooth), NULL, "smooth the MESH by N double steps that keep its volume (Taubin)"},
     {"--subdivide", NULL, "N", FLAG_COUNT, CLI_SURFACE, ALL(surface.subdivide), NULL, "each time four triangles for one (Loop), 1..4"},
+    {"--triangles", NULL, "N", FLAG_COUNT, CLI_SURFACE, ALL(surface.triangles), NULL, "merge vertices until N triangles are left at most, 100..16777216 (of meshes that have more: 16777216)"},
     {"--scene", NULL, "NAME", FLAG_CHOICE, CLI_SURFACE, ALL(scene), "aorta|aneurysm|liver|bone", "embedded surface, when no MESH is given: aorta (an arch with a bulge, and its flow), aneurysm, liver (with a vein inside) or bone"},
     {"--frames", NULL, "N", FLAG_COUNT, CLI_SURFACE, ALL(frames), NULL, "a sequence of pictures or a video over one period of the lines, or from their first time to the last"},
     {"--time", NULL, "MS", FLAG_NUMBER, CLI_SURFACE, ALL(time), NULL, "what is lit: the lines around this time, and the surface near them (0; of the embedded flow 180, of a VOLUME half of the median line's)"},
@@ -419,13 +421,13 @@ static bool set_scene(const char *value, const char **scene) {
 
 /* ---- flags ------------------------------------------------------------------------------ */
 
-/* The extension says which of the two. */
+/* The extension says which of the three. */
 static bool set_layout(const flag_row *row, const char *value, const char **names) {
     const char *dot = strrchr(value, '.');
-    if (!dot || !is_choice("svg|json", dot + 1))
-        return cli_fail("%s: '%s' is not a value of it; its name must end in .svg or .json",
+    if (!dot || !is_choice("svg|json|png", dot + 1))
+        return cli_fail("%s: '%s' is not a value of it; its name must end in .png, .svg or .json",
                         row->name, value);
-    names[strcmp(dot, ".json") == 0] = value;
+    names[strcmp(dot, ".json") == 0 ? 1 : strcmp(dot, ".png") == 0 ? 2 : 0] = value;
     return true;
 }
 
@@ -606,7 +608,7 @@ static bool check_vessel(const cli_options *o) {
     if (o->file_count == 1 && v->nodes)
         return cli_fail("--nodes: is for the embedded tree, and a TREE is given");
     if (!o->out && !o->dump && !o->timings && !o->save_camera && !v->layout[0] && !v->layout[1] &&
-        !v->tree && !o->json)
+        !v->layout[2] && !v->tree && !o->json)
         return cli_fail("vessel: no output is asked for; write -o out.png");
     if (v->grid && (v->grid < 16 || v->grid > 512))
         return cli_fail("--grid: '%u' is not a value of it; write 16..512", v->grid);
@@ -651,6 +653,9 @@ static bool check_surface(const cli_options *o) {
         return cli_fail("surface: no output is asked for; write -o out.png");
     if (s->subdivide > 4)
         return cli_fail("--subdivide: '%u' is not a value of it; write 1..4", s->subdivide);
+    if (s->triangles && (s->triangles < 100 || s->triangles > CLI_MOST_TRIANGLES))
+        return cli_fail("--triangles: '%u' is not a value of it; write 100..%u", s->triangles,
+                        (unsigned)CLI_MOST_TRIANGLES);
     if (s->value && o->file_count == 0)
         return cli_fail("--value: names an array of a MESH, and none is given");
     if (!flow && (o->frames || !isnan(o->time)))

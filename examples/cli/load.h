@@ -17,6 +17,7 @@ typedef struct cli_set {
     const char *value;  /* name of the attribute that `colors` show, or NULL */
     double range[2];    /* its values at both ends of the source's colour map */
     lao_settings settings;
+    bool overlay; /* made of another set for a camera: does not say how far the scene reaches */
     /* Of a vessel tree or a wall; its `lines` are points alone, which tell how far it reaches. */
     const lao_object_desc *object;            /* NULL: a set of lines */
     const void *module_settings[CLI_MODULES]; /* of cli_scene.modules; NULL: none */

@@ -324,7 +324,7 @@ static bool fill_set(cli_wall *wall) {
 
 /* ---- what depends on the camera --------------------------------------------------------- */
 
-static void focus(cli_wall *wall, const cli_shot *shot) {
+void cli_wall_focus(cli_wall *wall, const cli_shot *shot) {
     const cli_surface_options *o = &wall->options->surface;
     const double *at = o->focus_at;
     double depth = -(double)shot->view[14];
@@ -386,18 +386,32 @@ static void even_out(float *points, uint32_t count) {
     }
 }
 
-/* Flat ink, a line's width before the wall that it lies on. Shorter lines than `least` (mm) are
- * left out, and longer ones evened out if there is such a bound. */
-static bool fill_contours(cli_set *set, const vsf_polylines *lines, const float eye[4],
-                          double width, double least) {
+/* Of contours: flat ink. NULL: reported. */
+static cli_set *add_ink(cli_wall *wall, double width) {
     static const float ink[4] = {0.1f, 0.1f, 0.12f, 1};
+    cli_set *set = cli_scene_add(&wall->scene);
+    if (!set)
+        return NULL;
     lao_settings *s = &set->settings;
-    io_lines *out = &set->lines;
+    set->source = wall->source;
+    set->name = wall->name;
+    set->module_settings[0] = &wall->settings;
+    set->overlay = true;
     memcpy(set->color, ink, sizeof ink);
     s->width = (float)width;
     s->ambient = 1;
     s->set = LAO_SET(width) | LAO_SET(ambient) | LAO_SET(diffuse) | LAO_SET(specular) |
              LAO_SET(occlusion) | LAO_SET(halo);
+    return set;
+}
+
+/* In place of what the set had, a line's width before the wall that it lies on. Shorter lines than
+ * `least` (mm) are left out, and longer ones evened out if there is such a bound. */
+static bool fill_contours(cli_set *set, const vsf_polylines *lines, const float eye[4],
+                          double width, double least) {
+    io_lines *out = &set->lines;
+    io_lines_free(out);
+    memset(out, 0, sizeof *out);
     out->offsets = cli_new(lines->line_count + 1u, sizeof *out->offsets);
     out->points = cli_new(lines->point_count, 3 * sizeof *out->points);
     if (!out->offsets || !out->points)
@@ -436,21 +450,18 @@ static bool add_contours(cli_wall *wall, const float eye[4], vsf_feature feature
     if (vsf_feature_lines(&wall->host, &wall->mesh, &wall->object.buffers, eye, feature,
                           (float)threshold, &lines) != LAO_OK)
         return false;
-    cli_set *set = cli_scene_add(&wall->scene);
-    bool ok = set != NULL;
-    if (ok) {
-        set->source = wall->source;
-        set->name = wall->name;
-        set->module_settings[0] = &wall->settings;
-        ok = fill_contours(set, &lines, eye, width, least);
-    }
+    uint32_t *at = &wall->contours[feature];
+    cli_set *set = *at ? &wall->scene.sets[*at] : add_ink(wall, width);
+    if (set)
+        *at = (uint32_t)(set - wall->scene.sets);
+    bool ok = set && fill_contours(set, &lines, eye, width, least);
     vsf_polylines_free(&lines);
     return ok;
 }
 
 bool cli_wall_aim(cli_wall *wall, const cli_shot *shot) {
     float eye[4];
-    focus(wall, shot);
+    cli_wall_focus(wall, shot);
     cli_wall_eye(shot, eye);
     return add_contours(wall, eye, VSF_CONTOURS) &&
            add_contours(wall, eye, VSF_SUGGESTIVE_CONTOURS);
@@ -512,6 +523,24 @@ bool cli_wall_planes(void *user, cli_planes *planes) {
     return mask != NULL || cli_fail("the dump has no surface");
 }
 
+/* What this program did to the mesh. */
+static bool own_warning(const cli_wall *wall, uint32_t i, char *text, size_t size) {
+    if (wall->turned && i-- == 0)
+        snprintf(text, size,
+                 "it is open and seemed inside out, and was turned round; --flip off leaves it");
+    else if (wall->widened && i-- == 0)
+        snprintf(text, size,
+                 "%u nodes have a radius below %.3g mm and were given that; --grid makes it less",
+                 (unsigned)wall->widened, wall->thinnest);
+    else if (wall->decimated && i == 0)
+        snprintf(text, size,
+                 "vertices were merged: %u of %u triangles are left; --triangles says how many",
+                 (unsigned)wall->decimated_to, (unsigned)wall->decimated);
+    else
+        return false;
+    return true;
+}
+
 bool cli_wall_warning(const cli_wall *wall, uint32_t i, char *text, size_t size) {
     const bool mesh = (wall->contents.kinds & IO_MESH) != 0;
     const io_mesh *triangles = &wall->contents.mesh;
@@ -524,15 +553,8 @@ bool cli_wall_warning(const cli_wall *wall, uint32_t i, char *text, size_t size)
         sdv_tree_warning_text(built, i, text, size);
     else if ((i -= built->warning_count) < wall->mesh.warning_count)
         vsf_mesh_warning_text(&wall->mesh, i, text, size);
-    else if ((i -= wall->mesh.warning_count) == 0 && wall->turned)
-        snprintf(text, size,
-                 "it is open and seemed inside out, and was turned round; --flip off leaves it");
-    else if (i == 0 && wall->widened)
-        snprintf(text, size,
-                 "%u nodes have a radius below %.3g mm and were given that; --grid makes it less",
-                 (unsigned)wall->widened, wall->thinnest);
     else
-        return false;
+        return own_warning(wall, i - wall->mesh.warning_count, text, size);
     return true;
 }
 

@@ -18,6 +18,8 @@ typedef struct cli_wall {
     io_vessel vessel;     /* of a file that holds a tree */
     uint32_t widened;     /* nodes of it that were thinner than this, and were made so wide: */
     double thinnest;      /* mm */
+    uint32_t decimated;   /* triangles that the mesh had before it was decimated; 0: it was not */
+    uint32_t decimated_to;
     bool made;            /* the mesh is from marching cubes, with their stairs */
     bool turned;          /* it is open, seemed inside out and was turned round */
     bool placed;          /* the origin is that of lines or others in the scene, not its own */
@@ -30,6 +32,7 @@ typedef struct cli_wall {
     vsf_settings settings;
     double range[2];  /* of --value */
     double curvature; /* median, 1/mm; 0: not yet known */
+    uint32_t contours[2]; /* sets of the scene that show vsf_feature 0 and 1; 0: not yet there */
     colour_map map;   /* of --wall-colormap */
 } cli_wall;
 
@@ -45,10 +48,12 @@ bool cli_wall_mesh(cli_wall *wall);
 /* Shows a time (ms). Returns whether the object's distances changed; then `update` is for
  * lao_object_update. */
 bool cli_wall_time(cli_wall *wall, double time, lao_object_desc *update);
-/* What depends on the camera, once: --focus, and contours as further sets of lines. False:
- * reported.
+/* What depends on the camera: --focus, and contours as further sets of lines, made anew by each
+ * call. False: reported.
  */
 bool cli_wall_aim(cli_wall *wall, const cli_shot *shot);
+/* Of that --focus alone, which takes no time. */
+void cli_wall_focus(cli_wall *wall, const cli_shot *shot);
 /* The camera as the passes see it. */
 void cli_wall_eye(const cli_shot *shot, float eye[4]);
 /* The scales of its colours, at most two; maps and titles are kept in the others. How many? */

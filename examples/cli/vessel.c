@@ -23,6 +23,8 @@ static void on_log(void *user, sdv_log_item item, lao_result result, const char 
         cli_go_on();
     else if (result != LAO_OK)
         cli_fail("%s: %s", tree->name, text);
+    else if (item == SDV_LOG_GRID_DEVICE)
+        cli_warn(tree->name, text);
 }
 
 /* ---- the tree --------------------------------------------------------------------------- */
@@ -374,20 +376,50 @@ static bool add_shapes(cli_tree *tree) {
                              &tree->object) == LAO_OK;
 }
 
+static bool make_object(cli_tree *tree, const sdv_grid_desc *desc) {
+    tree->progress = (cli_progress){"measuring the field of", tree->name, -1};
+    double begin = now();
+    bool ok = sdv_grid_build(&tree->host, &tree->vessel.tree, desc, &tree->grid) == LAO_OK;
+    cli_progress_end(&tree->progress);
+    tree->grid_seconds = now() - begin;
+    return ok && cli_go_on() && cli_tree_colour(tree) &&
+           sdv_object_make(&tree->host, &tree->grid, tree->colors, &tree->object) == LAO_OK;
+}
+
+enum { DEVICE_IMAGE = 4096 }; /* px: of an image, what any device of Vulkan has */
+
+/* The device builds the field; box and cones are made here, a first time to know whom colours are
+ * for. Where it cannot, which has been said, the CPU does. */
+static bool make_device_object(cli_tree *tree, const sdv_grid_desc *desc) {
+    const sdv_tree *t = &tree->vessel.tree;
+    for (int i = 0; i < 2; i++) {
+        sdv_object_free(&tree->object);
+        if (sdv_object_make_tree(&tree->host, t, desc, DEVICE_IMAGE, tree->colors, &tree->object) !=
+            LAO_OK)
+            return false;
+        tree->by_device = tree->object.on_device != 0;
+        if (!tree->by_device) {
+            sdv_object_free(&tree->object);
+            return make_object(tree, desc);
+        }
+        tree->grid = tree->object.grid; /* the object's own */
+        if (i == 0 && !cli_tree_colour(tree))
+            return false;
+    }
+    return true;
+}
+
 bool cli_tree_prepare(cli_tree *tree) {
+    const char *field = tree->options->vessel.field;
     sdv_grid_desc desc;
     memset(&desc, 0, sizeof desc);
     desc.resolution = tree->options->vessel.grid;
     if (is_surface(tree))
         return cli_go_on() && cli_tree_mesh_object(tree) && make_scene(tree) &&
                cli_tree_pattern(tree);
-    tree->progress = (cli_progress){"measuring the field of", tree->name, -1};
-    double begin = now();
-    bool ok = sdv_grid_build(&tree->host, &tree->vessel.tree, &desc, &tree->grid) == LAO_OK;
-    cli_progress_end(&tree->progress);
-    tree->grid_seconds = now() - begin;
-    ok = ok && cli_go_on() && cli_carving_make(tree) && cli_tree_colour(tree) &&
-         sdv_object_make(&tree->host, &tree->grid, tree->colors, &tree->object) == LAO_OK;
+    bool by_device = field && strcmp(field, "device") == 0;
+    bool ok = cli_carving_make(tree) &&
+              (by_device ? make_device_object(tree, &desc) : make_object(tree, &desc));
     ok = ok && (!tree->carving.shapes.count || add_shapes(tree)) &&
          (!tree->aim || !tree->options->vessel.link || cli_marker_make(tree));
     return ok && make_scene(tree) && cli_tree_pattern(tree);
@@ -443,7 +475,8 @@ void cli_tree_free(cli_tree *tree) {
     sdv_object_free(&tree->object);
     vsf_mesh_free(&tree->mesh);
     free(tree->colors);
-    sdv_grid_free(&tree->grid);
+    if (!tree->by_device)
+        sdv_grid_free(&tree->grid);
     free(tree->carving.fields);
     cli_marker_free(&tree->marker);
     free(tree->distances);

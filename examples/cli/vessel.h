@@ -44,7 +44,8 @@ typedef struct cli_tree {
     float *cone_distances;        /* owned; of segments and balls, as --tree counts them */
     uint32_t cone_count;
     cli_carving carving;
-    sdv_grid grid;
+    sdv_grid grid; /* by_device: the object's, box and cones alone */
+    bool by_device;
     double grid_seconds;
     uint8_t *colors;   /* owned; 8 per cone */
     const char *value; /* what the colours show; NULL: no number */
@@ -96,6 +97,10 @@ bool cli_tree_colour(cli_tree *tree);
 bool cli_tree_scale(const cli_tree *tree, colour_map *map, char title[160], legend *out);
 /* The same beside a picture, at a side ("left", ...). False: reported. */
 bool cli_tree_legend(const cli_tree *tree, const char *side, picture *p);
+
+/* The 2D layout drawn by the backend into a view of its own, for --layout NAME.png, in the colours
+ * of the tree, which is prepared. False: reported, nothing to free. */
+bool cli_layout_picture(const cli_tree *tree, picture *p);
 
 /* The 2D layout as a picture, in the colours of the tree; with a target on the distances between
  * (L19 5, Fig. 10). False: reported. */

@@ -238,6 +238,13 @@ static bool list_settings(document *doc) {
 void document_set(document *doc, uint32_t index, int setting, float value) {
     document_settings *s = &doc->settings[index];
     uint64_t bit = (uint64_t)1 << setting, *set = s->now;
+    if (s->module == vsf_module() &&
+        (bit & (VSF_SET(focus) | VSF_SET(focus_near) | VSF_SET(focus_far)))) {
+        if (doc->options.surface.focus_numbers) /* its depths are numbers from now on */
+            s->edited |= VSF_SET(focus) | VSF_SET(focus_near) | VSF_SET(focus_far);
+        doc->options.surface.focus = NULL;
+        doc->options.surface.focus_numbers = 0;
+    }
     values_of(s->now)[setting] = value;
     *set |= bit;
     s->edited |= bit;
@@ -273,6 +280,38 @@ void document_reset(document *doc, uint32_t index, int setting) {
     s->edited &= ~bit;
     if (doc->command == CLI_SURFACE && s->set == 1)
         doc->scene->sets[0].settings.set &= ~bit | *(uint64_t *)s->base;
+}
+
+/* Leaves the last "--set name=..." of the words out. */
+static void forget_edit(document *doc, const char *name) {
+    size_t length = strlen(name);
+    for (uint32_t i = doc->word_count; i-- > 1;) {
+        char **at = &doc->words[i - 1];
+        if (strcmp(at[0], "--set") != 0 || strncmp(at[1], name, length) != 0 ||
+            at[1][length] != '=')
+            continue;
+        free(at[0]);
+        free(at[1]);
+        memmove(at, at + 2, (doc->word_count - i) * sizeof *at); /* and the NULL */
+        doc->word_count -= 2;
+        return;
+    }
+}
+
+void document_inherit(document *doc, const document *from) {
+    for (uint32_t i = 0; i < doc->settings_count && i < from->settings_count; i++) {
+        document_settings *to = &doc->settings[i];
+        const document_settings *s = &from->settings[i];
+        for (uint32_t k = 0; to->module == s->module && k < s->module->setting_count; k++) {
+            uint64_t bit = (uint64_t)1 << k;
+            if (!(s->edited & bit))
+                continue;
+            values_of(to->base)[k] = values_of(s->base)[k];
+            *(uint64_t *)to->base = (*(uint64_t *)to->base & ~bit) | (*(uint64_t *)s->base & bit);
+            to->edited |= bit;
+            forget_edit(doc, s->module->settings[k].name);
+        }
+    }
 }
 
 float document_value(const document *doc, uint32_t index, int setting) {
@@ -427,8 +466,9 @@ bool document_surround(void *user, picture *p) {
 /* Flags of the words that the viewer says itself: how many words each takes. */
 static int words_dropped(const char *word) {
     static const char *const names[] = {
-        "--camera",  "--size",   "--time", "--view",    "--out",     "--save-camera", "--dump",
-        "--timings", "--frames", "--fps",  "--backend", "--outline", "--margin",      "-o"};
+        "--camera",      "--size",    "--time",    "--view",   "--out",
+        "--save-camera", "--dump",    "--timings", "--frames", "--fps",
+        "--backend",     "--outline", "--margin",  "-o",       "--focus"};
     if (strcmp(word, "--ortho") == 0 || strcmp(word, "--backdrop") == 0)
         return 1;
     for (size_t i = 0; i < sizeof names / sizeof *names; i++) {
@@ -557,6 +597,7 @@ static void put_view(cli_text *t, bool plain, const document *doc, const cli_sho
         cli_shortest(shot->time, text, sizeof text);
         put_pair(t, plain, "--time", text);
     }
+    put_pair(t, plain, "--focus", doc->options.surface.focus);
     t->broken = t->broken || !camera;
     put_pair(t, plain, "--camera", camera);
     free(camera);
@@ -582,11 +623,15 @@ char *document_command(const document *doc, const cli_shot *shot, const char *ou
     return end_text(&t);
 }
 
-char *document_words(const document *doc, const cli_shot *shot, const char *without) {
+char *document_without(const document *doc, const cli_shot *shot, const char *file) {
     cli_text t = {NULL, 0, 0, false};
-    put_words(&t, true, doc, without);
+    put_words(&t, true, doc, file);
     put_view(&t, true, doc, shot);
     return end_text(&t);
+}
+
+char *document_words(const document *doc, const cli_shot *shot) {
+    return document_without(doc, shot, NULL);
 }
 
 bool document_joins(const document *doc) {
@@ -598,7 +643,7 @@ bool document_joins(const document *doc) {
 char *document_joined(const document *doc, const cli_shot *shot) {
     cli_text t = {NULL, 0, 0, false};
     if (doc->command == CLI_RENDER)
-        return document_words(doc, shot, NULL);
+        return document_words(doc, shot);
     put_files(&t, true, doc);
     put_view(&t, true, doc, shot);
     return end_text(&t);

@@ -52,6 +52,10 @@ float document_value(const document *doc, uint32_t index, int setting);
 /* Must the document be opened again for an edit of this setting to show? */
 bool document_reloads(const document *doc, uint32_t index, int setting);
 
+/* `doc` was opened with the words of `from`, edits among them: they are edits in it too, which can
+ * be taken back. */
+void document_inherit(document *doc, const document *from);
+
 /* Shows the lines of a time, or all of them. */
 void document_show_time(document *doc, bool shown);
 bool document_shows_time(const document *doc);
@@ -60,10 +64,11 @@ bool document_shows_time(const document *doc);
 bool document_surround(void *user, picture *p);
 
 /* "lineao render a.trk --set ... --camera '...' --size WxH -o picture.png", for a shell; the words
- * alone for `words` (not quoted, one a line), if asked for without a file of `render` and its
- * flags. For free(). NULL: reported. */
+ * alone for `words` (not quoted, one a line). For free(). NULL: reported. */
 char *document_command(const document *doc, const cli_shot *shot, const char *out);
-char *document_words(const document *doc, const cli_shot *shot, const char *without);
+char *document_words(const document *doc, const cli_shot *shot);
+/* The words of `render` without a file and the flags that hold for it. */
+char *document_without(const document *doc, const cli_shot *shot, const char *file);
 /* The same as words of `render`, which further files can follow; settings, units and colours stay,
  * what else was said to lineao vessel or surface does not. */
 char *document_joined(const document *doc, const cli_shot *shot);

@@ -267,8 +267,14 @@ void pick_at(const document *doc, const cli_shot *shot, double x, double y, doub
         tell_line(doc, out);
 }
 
+const cli_tree *picked_on(const document *doc, const picked *of) {
+    bool there = of->kind == PICKED_TREE && of->set < doc->scene->count;
+    const cli_tree *tree = there ? doc->scene->sets[of->set].tree : NULL;
+    return tree && of->point < tree->vessel.tree.node_count ? tree : NULL;
+}
+
 const cli_tree *picked_tree(const document *doc, const picked *of) {
-    const cli_tree *found = of->kind == PICKED_TREE ? doc->scene->sets[of->set].tree : NULL;
+    const cli_tree *found = picked_on(doc, of);
     for (uint32_t i = 0; i < doc->scene->count && !found; i++)
         found = doc->scene->sets[i].tree;
     return found;

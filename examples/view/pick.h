@@ -20,7 +20,9 @@ void pick_at(const document *doc, const cli_shot *shot, double x, double y, doub
              picked *out);
 /* A node of a tree, as if it had been clicked. */
 void pick_node(const document *doc, const cli_tree *tree, uint32_t node, picked *out);
-/* The tree that was picked, else the first there is, or NULL. */
+/* The tree that was picked, or NULL. */
+const cli_tree *picked_on(const document *doc, const picked *of);
+/* The same, else the first there is, or NULL. */
 const cli_tree *picked_tree(const document *doc, const picked *of);
 
 #endif

@@ -287,8 +287,8 @@ static void a_step_finds_its_buffers(void **state) {
     assert_int_equal(step->constants[0], 1);
     assert_int_equal(step->constants[1], 1);
     assert_int_equal(step->constants[2], 2);
-    /* the line module's two buffers stand before ours */
-    assert_int_equal(step->reads[1], LAO_READ_BUFFER + 2 + CORNERS_ROW);
+    /* the line module's three buffers stand before ours */
+    assert_int_equal(step->reads[1], LAO_READ_BUFFER + 3 + CORNERS_ROW);
     assert_true(LAO_READ_IS_BUFFER(step->reads[1]));
     assert_false(LAO_READ_IS_BUFFER(step->reads[0]));
     assert_false(LAO_READ_IS_BUFFER(LAO_NO_INDEX));

@@ -236,7 +236,8 @@ static float light_weight(const c_inputs *in, const centre *c, lao_tap tap, lao_
     if ((int)s->light == LAO_LIGHT_PAPER)
         return lao_light_weight(c->diffuse, tap.n_omega, s->light_intensity * s->light_specular,
                                 tap.r_omega, (int)s->light_exponent);
-    lao_v3 occluder = lao_signed_unpack(texel(in->level_tangent[level], tap.x, tap.y));
+    lao_v4 t = texel(level ? in->level_tangent[level] : in->tangent, tap.x, tap.y);
+    lao_v3 occluder = level ? lao_signed_unpack(t) : lao_v3_make(t.x, t.y, t.z);
     lao_v3 omega = lao_v3_scale(lao_mirror(direction, c->noise), lao_turned(1, tap.side));
     return lao_light_weight_author(omega, tap.n_omega, occluder, c->l, (int)s->light_exponent);
 }

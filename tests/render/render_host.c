@@ -20,7 +20,12 @@ static struct {
         uint32_t image, level;
     } instances[RENDER_MOST_IMAGES];
     uint32_t count;
+    int endless;
 } spy;
+
+void render_endless(int on) {
+    spy.endless = on;
+}
 
 static struct {
     const lao_module *const *list;
@@ -61,14 +66,26 @@ static void spy_on(const lao_execution *execution) {
     }
 }
 
-static lao_result spy_gl(void *self, void *view, const lao_execution *execution) {
+static lao_result spy_execute(execute_function execute, void *self, void *view,
+                              const lao_execution *execution) {
+    lao_execution endless = *execution;
+    lao_draw draws[RENDER_MOST_SETS];
     spy_on(execution);
-    return spy.gl(self, view, execution);
+    if (!spy.endless)
+        return execute(self, view, execution);
+    memcpy(draws, execution->draws, execution->set_count * sizeof *draws);
+    for (uint32_t i = 0; i < execution->set_count; i++)
+        draws[i].window.length = 1e30f;
+    endless.draws = draws;
+    return execute(self, view, &endless);
+}
+
+static lao_result spy_gl(void *self, void *view, const lao_execution *execution) {
+    return spy_execute(spy.gl, self, view, execution);
 }
 
 static lao_result spy_vk(void *self, void *view, const lao_execution *execution) {
-    spy_on(execution);
-    return spy.vk(self, view, execution);
+    return spy_execute(spy.vk, self, view, execution);
 }
 
 static void on_log(void *user, lao_log_item item, lao_result result, const char *text) {

@@ -28,6 +28,8 @@ typedef struct render_device {
     double milliseconds; /* of the last frame, compilation and all */
 } render_device;
 
+/* From now on every window of time is without end: whatever has times is drawn (on != 0). */
+void render_endless(int on);
 /* Opens a device with a context on it. `get_proc` NULL: the driver's; api_version 0: 1.3. Returns 0
  * where there is none: the test skips, or fails where a GPU is expected. */
 /* Further modules of the contexts that are opened from now on; the array must stay. */

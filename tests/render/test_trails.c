@@ -237,6 +237,58 @@ static void test_none(void **state) {
     }
 }
 
+/* Lines at all angles whose times go through two periods, forwards and backwards. */
+static render_lines timed(void) {
+    render_lines lines = {0};
+    uint32_t seed = 5;
+    for (int i = 0; i < 300; i++) {
+        double a = 0.7 * i, x = 70 * cos(2.4 * i), y = 70 * sin(2.4 * i), z = i % 37 - 18;
+        double start = (double)(lao_hash(seed++) % 800);
+        for (int k = 0; k < 30; k++) {
+            double s = 0.09 * k;
+            render_point(&lines, x + 3 * k * cos(a + s), y + 3 * k * sin(a + s), z + 0.3 * k);
+            lines.times[lines.point_count - 1] = (float)(start + (i & 1 ? 25 : -25) * k);
+        }
+        render_line(&lines);
+    }
+    for (uint32_t i = 0; i < lines.point_count; i++)
+        lines.colors[4 * i] = (uint8_t)i;
+    return lines;
+}
+
+/* What is left out of a frame would not have been seen; and a window over everything shows what no
+   window shows. */
+static void test_order(void **state) {
+    (void)state;
+    for (int i = 0; i < 24; i++) {
+        render_device *device = &devices[i & 1];
+        render_lines lines = timed();
+        lao_settings settings = plain(i % 3 ? LAO_TRAIL_TAPER : LAO_TRAIL_OPACITY);
+        double time = 67.3 * i;
+        render_result a, b;
+        render_need(device);
+        settings.width = 3;
+        settings.halo = (float)(i / 2 % 3);
+        settings.period = i % 4 < 2 ? 800 : 0;
+        a = drawn(device, &lines, &settings, time);
+        render_endless(1);
+        b = drawn(device, &lines, &settings, time);
+        render_endless(0);
+        same("groups left out", &a, &b);
+        render_free(&a);
+        render_free(&b);
+        settings.trail_length = 1e6f;
+        a = drawn(device, &lines, &settings, time);
+        settings.trail = LAO_TRAIL_NONE;
+        b = drawn(device, &lines, &settings, time);
+        if (i % 3)
+            same("everything in order of time", &a, &b);
+        render_free(&a);
+        render_free(&b);
+        render_lines_free(&lines);
+    }
+}
+
 static int setup(void **state) {
     (void)state;
     render_open_gl(&devices[0], NULL);
@@ -256,6 +308,7 @@ int main(void) {
         cmocka_unit_test(test_taper),   cmocka_unit_test(test_tips),
         cmocka_unit_test(test_opacity), cmocka_unit_test(test_highlight),
         cmocka_unit_test(test_period),  cmocka_unit_test(test_none),
+        cmocka_unit_test(test_order),
     };
     return cmocka_run_group_tests(tests, setup, teardown);
 }

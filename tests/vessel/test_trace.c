@@ -245,7 +245,7 @@ static void random_rays(void **state) {
             }
             hits++;
             double p[3] = {(double)hit.position.x, (double)hit.position.y, (double)hit.position.z};
-            uint32_t nearest;
+            uint32_t nearest = SDV_NONE;
             double d = union_distance(&c.grid, p, &nearest);
             worst = fmax(worst, fabs(d));
             loose += fabs((double)hit.t - t.t) > 0.05 * cell;
