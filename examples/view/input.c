@@ -286,9 +286,7 @@ static void on_scroll(GLFWwindow *glfw, double x, double y) {
 /* ---- files and window -------------------------------------------------------------------- */
 
 static void on_drop(GLFWwindow *glfw, int count, const char **paths) {
-    view *v = of(glfw);
-    v->hands.reopening = false;
-    loader_start(v->loader, paths, (uint32_t)count);
+    stage_add(of(glfw), paths, (uint32_t)count);
 }
 
 static void on_resize(GLFWwindow *glfw, int width, int height) {

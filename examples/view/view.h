@@ -143,6 +143,9 @@ bool stage_save(view *v, const char *path, uint32_t width, uint32_t height);
 void stage_select(view *v);
 /* Opens the same document again with what was edited. */
 void stage_reload(view *v);
+/* Opens files beside what is open, where that can be; takes one of several away again. */
+void stage_add(view *v, const char *const *files, uint32_t count);
+void stage_remove(view *v, const char *file);
 /* Where a place (mm, absolute) is in the window. False: behind the eye. */
 bool stage_place(const view *v, const double at[3], float place[2]);
 /* Of the whole document: its middle (absolute) and the axis that is up. */

@@ -444,28 +444,59 @@ static void opens_what_is_dropped(desktop *d) {
     write_file("tree.swc", tree_file);
     snprintf(path, sizeof path, "%s/tree.swc", folder);
     user_drops(d, path);
-    assert_string_equal(viewer_hears(d, "opened "), "vessel tree.swc");
+    assert_string_equal(viewer_hears(d, "opened "), "render cross.obj"); /* both */
     viewer_hears(d, "frame");
+    user_types(d, "c");
+    assert_non_null(strstr(viewer_hears(d, "command "), "/tree.swc"));
     write_file("broken.swc", "1 1 0 0\n");
     snprintf(path, sizeof path, "%s/broken.swc", folder);
     user_drops(d, path);
     assert_non_null(strstr(viewer_hears(d, "error "), "broken.swc"));
     viewer_rests(d, 0.6);
     user_clicks(d, "Close");
-    user_types(d, "1"); /* the tree is still there */
+    user_types(d, "1"); /* the others are still there */
     assert_non_null(strstr(viewer_hears(d, "frame"), "ok"));
+    user_types(d, "c");
+    snprintf(path, sizeof path, "%s", viewer_hears(d, "command "));
+    assert_non_null(strstr(path, "/tree.swc"));
+    assert_null(strstr(path, "broken"));
     write_volume("blood.vtk");
     write_file("wall.obj", "v 0 0 0\nv 10 0 0\nv 0 10 0\nv 0 0 10\n"
                            "f 1 3 2\nf 1 2 4\nf 1 4 3\nf 2 3 4\n");
-    for (int i = 0; i < 3; i++) {
-        static const char *const files[3][2] = {{"cross.obj", "render cross.obj"},
-                                                {"wall.obj", "surface wall.obj"},
-                                                {"blood.vtk", "render blood.vtk"}};
-        snprintf(path, sizeof path, "%s/%s", folder, files[i][0]);
+    for (int i = 0; i < 2; i++) {
+        static const char *const files[2] = {"wall.obj", "blood.vtk"};
+        snprintf(path, sizeof path, "%s/%s", folder, files[i]);
         user_drops(d, path);
-        assert_string_equal(viewer_hears(d, "opened "), files[i][1]);
+        assert_string_equal(viewer_hears(d, "opened "), "render cross.obj");
         assert_non_null(strstr(viewer_hears(d, "frame"), "ok"));
+        user_types(d, "c");
+        assert_non_null(strstr(viewer_hears(d, "command "), files[i]));
     }
+}
+
+/* Lines, a tree and a wall in one picture; then without one of them. */
+static void mixes(void **state) {
+    static const char *const words[] = {"line.obj", "tree.swc", "wall.obj", "--ssaa", "1", NULL};
+    fixture *f = *state;
+    desktop *d = f->desktop;
+    write_file("line.obj", "v -20 0 -20\nv 0 5 10\nv 20 0 20\nl 1 2 3\n");
+    write_file("tree.swc", "1 1 0 0 0 4 -1\n2 1 0 0 30 3 1\n3 1 10 0 50 2 2\n4 1 -10 0 50 2 2\n");
+    write_file("wall.obj", "v -15 -15 -5\nv 15 -15 -5\nv 0 15 -5\nv 0 0 35\n"
+                           "f 1 3 2\nf 1 2 4\nf 2 3 4\nf 3 1 4\n");
+    start(f, words);
+    writes_what_the_program_writes(d, "strength");
+    user_types(d, "c");
+    assert_non_null(strstr(viewer_hears(d, "command "), "line.obj --set strength="));
+    user_clicks(d, "Scene");
+    user_clicks(d, "Take away"); /* the last: the wall */
+    assert_string_equal(viewer_hears(d, "opened "), "render line.obj");
+    viewer_hears(d, "frame");
+    user_types(d, "c");
+    const char *command = viewer_hears(d, "command ");
+    assert_null(strstr(command, "wall.obj"));
+    assert_non_null(strstr(command, "tree.swc --ssaa 1"));
+    assert_non_null(strstr(command, "line.obj --set strength="));
+    quit(f);
 }
 
 /* ---- picking and comparing ------------------------------------------------------------------- */
@@ -632,6 +663,7 @@ int main(int argc, char **argv) {
         {"makes_videos", makes_videos, NULL, clean_up, &f},
         {"follows_the_monitor", follows_the_monitor, NULL, clean_up, &f},
         {"picks_and_opens", picks_and_opens, NULL, clean_up, &f},
+        {"mixes", mixes, NULL, clean_up, &f},
     };
     void *state = &f;
     if (argc > 4) /* those of this name */
