@@ -73,7 +73,7 @@ static void pick_lines(const document *doc, const cli_shot *shot, const pick_ray
     for (uint32_t s = 0; s < doc->scene->count; s++) {
         const cli_set *set = &doc->scene->sets[s];
         lao_settings settings = lao_settings_filled(&set->settings);
-        for (uint32_t i = 0; i < set->lines.line_count && !set->object; i++) {
+        for (uint32_t i = 0; i < set->lines.line_count && !set->object && !set->overlay; i++) {
             uint32_t end = set->lines.offsets[i + 1];
             for (uint32_t p = set->lines.offsets[i]; p + 1 < end; p++) {
                 const float *a = set->lines.points + 3 * (size_t)p;
