@@ -294,6 +294,22 @@ typedef struct sdv_svg_desc {
 SDV_API int sdv_layout_write_svg(const sdv_reduced *reduced, const sdv_layout *layout,
                                  const sdv_svg_desc *desc, const sdv_writer *writer);
 
+typedef struct sdv_drawing_desc {
+    float width, height; /* mm; 0: 200 x 100, radial 150 x 150 */
+    uint32_t radial;     /* non-zero: angle h, radius 1 - s */
+    float thickness;     /* mm, full, of the thinnest edge; 0: what suits the number of edges */
+} sdv_drawing_desc;
+/* The layout as a tree of its own, to be drawn like any tree into a view of its own: an
+   orthographic camera above the plane z = 0 sees it between (0, 0) and (width, height), the root on
+   top. Its node k is node k of the tree, on the edge of its reduced node by its way along the
+   vessel; from tree->node_count on come the extra nodes (sdv_reduced.ids), so that colours of nodes
+   serve both. Edges are the thicker the wider their vessels, by the root of the radius, up to four
+   times. Loops are cut. `desc` NULL: defaults. Free with sdv_tree_free. Fails with NULL_ARGUMENT,
+   MEMORY. */
+SDV_API lao_result sdv_layout_tree(const sdv_host *host, const sdv_tree *tree,
+                                   const sdv_reduced *reduced, const sdv_layout *layout,
+                                   const sdv_drawing_desc *desc, sdv_tree *drawing);
+
 /* ------------------------------------------------------------------------------------------------
  * the distance field on a grid */
 
@@ -2161,11 +2177,14 @@ LAO_FN float sdv_style_tone(float facing, float ambient, float diffuse, float li
     return lao_clamp01(r);
 }
 /* What the void keeps of its ink where the ray passes a vessel at d_min mm: all beside it, nothing
-   from `reach` mm on, and all everywhere without a reach. */
-LAO_FN float sdv_void_share(float d_min, float reach) {
-    LAO_EXACT float near_ = lao_clamp01(1.0f - lao_max(d_min, 0.0f) / lao_max(reach, 1.0e-6f));
-    LAO_EXACT float r = near_ * near_ * (3.0f - 2.0f * near_);
-    return reach > 0.0f ? r : 1.0f;
+   from `reach` mm on (0: no end), and nothing where it is so steep that strokes would be grey. wide:
+   periods per pixel. */
+LAO_FN float sdv_void_share(float d_min, float reach, float wide) {
+    LAO_EXACT float part = lao_clamp01(1.0f - lao_max(d_min, 0.0f) / lao_max(reach, 1.0e-6f));
+    LAO_EXACT float all = part * part * (3.0f - 2.0f * part);
+    LAO_EXACT float seen = lao_clamp01(2.0f - 2.0f * wide / SDV_HALO_FOOTPRINT);
+    LAO_EXACT float r = seen * (reach > 0.0f ? all : 1.0f);
+    return r;
 }
 /* Red near, blue far (METHODS 6.1, RSH06). */
 LAO_FN lao_v3 sdv_chromadepth(float depth) {
@@ -3399,6 +3418,126 @@ SDV_API int sdv_layout_write_svg(const sdv_reduced *reduced, const sdv_layout *l
         }
     }
     return stop ? stop : sdv__print(writer, "</g>\n</svg>\n");
+}
+
+/* ---- as a tree */
+typedef struct sdv__drawing {
+    const sdv_tree *tree;
+    const sdv_reduced *reduced;
+    const sdv_layout *layout;
+    sdv_svg_desc page;
+    float thin, widest; /* half thickness of the thinnest edge; greatest radius of a vessel, mm */
+    float *positions, *radii;
+    sdv_segment *segments;
+    uint32_t node_count, segment_count;
+} sdv__drawing;
+
+static void sdv__drawing_put(sdv__drawing *d, uint32_t id, uint32_t node, lao_v2 at) {
+    float part = d->widest > 0 ? lao_sqrt(d->tree->nodes[node].w / d->widest) : 0.0f;
+    d->positions[3 * (size_t)id] = at.x;
+    d->positions[3 * (size_t)id + 1] = d->page.height - at.y;
+    d->positions[3 * (size_t)id + 2] = 0.0f;
+    d->radii[id] = d->thin * (1.0f + 3.0f * part);
+}
+static void sdv__drawing_join(sdv__drawing *d, uint32_t parent, uint32_t child) {
+    d->segments[d->segment_count].parent = parent;
+    d->segments[d->segment_count++].child = child;
+}
+static float sdv__way(const sdv_tree *t, uint32_t node) {
+    const lao_v4 *a = t->nodes + node, *b = t->nodes + t->parents[node];
+    lao_v3 way = lao_v3_make(a->x - b->x, a->y - b->y, a->z - b->z);
+    return lao_sqrt(lao_v3_dot(way, way));
+}
+/* The edge above a reduced node, from below, with all nodes of the tree on it. */
+static void sdv__drawing_edge(sdv__drawing *d, uint32_t k) {
+    const sdv_reduced *r = d->reduced;
+    const sdv_tree *t = d->tree;
+    uint32_t up = r->parents[k], node = r->nodes[k], end, count = 0, i;
+    lao_v2 low = sdv__layout_place(d->layout, &d->page, k), top;
+    float way = 0.0f, whole = 0.0f;
+    if (up == SDV_NONE || r->ids[k] >= t->node_count) {
+        sdv__drawing_put(d, r->ids[k], node, low);
+        if (up != SDV_NONE) {
+            sdv__drawing_join(d, r->ids[up], r->ids[k]);
+        }
+        return;
+    }
+    top = sdv__layout_place(d->layout, &d->page, up);
+    end = r->nodes[up];
+    for (; node != end; node = t->parents[node]) {
+        whole += sdv__way(t, node);
+        count++;
+    }
+    node = r->nodes[k];
+    for (i = 0; i < count; i++, node = t->parents[node]) {
+        float at = whole > 0.0f ? way / whole : (float)i / (float)count;
+        sdv__drawing_put(d, node, node,
+                         lao_v2_make(low.x + at * (top.x - low.x), low.y + at * (top.y - low.y)));
+        sdv__drawing_join(d, t->parents[node] == end ? r->ids[up] : t->parents[node], node);
+        way += sdv__way(t, node);
+    }
+}
+/* The thinnest edge is a 200th of the page, less where edges are many, but never less than 2/5 of
+   that. */
+static void sdv__drawing_page(sdv__drawing *d, const sdv_drawing_desc *desc) {
+    sdv_drawing_desc none = {0, 0, 0, 0};
+    float unit, fits;
+    uint32_t i;
+    desc = desc ? desc : &none;
+    d->page.radial = desc->radial;
+    d->page.width = desc->width > 0 ? desc->width : desc->radial ? 150.0f : 200.0f;
+    d->page.height = desc->height > 0 ? desc->height : desc->radial ? 150.0f : 100.0f;
+    unit = lao_min(d->page.width, d->page.height) / 200.0f;
+    fits = 0.35f * d->page.width / (float)d->reduced->node_count;
+    d->thin = desc->thickness > 0 ? 0.5f * desc->thickness
+                                  : lao_min(0.5f * unit, lao_max(fits, 0.2f * unit));
+    for (i = 0; i < d->tree->node_count; i++) {
+        d->widest = lao_max(d->widest, d->tree->nodes[i].w);
+    }
+}
+SDV_API lao_result sdv_layout_tree(const sdv_host *host, const sdv_tree *tree,
+                                   const sdv_reduced *reduced, const sdv_layout *layout,
+                                   const sdv_drawing_desc *desc, sdv_tree *drawing) {
+    lao_allocator a = sdv__allocator(host);
+    lao_result result = LAO_ERROR_OUT_OF_MEMORY;
+    sdv__drawing d;
+    sdv_tree_desc out;
+    sdv_host silent;
+    uint32_t k;
+    if (!tree || !reduced || !layout || !drawing || !tree->memory || !reduced->memory ||
+        !layout->memory) {
+        return sdv__fail(host, SDV_LOG_NULL_ARGUMENT, "sdv_layout_tree");
+    }
+    memset(&d, 0, sizeof d);
+    memset(&out, 0, sizeof out);
+    memset(&silent, 0, sizeof silent); /* edges of length 0 are none of the host's business */
+    silent.allocator = a;
+    d.tree = tree;
+    d.reduced = reduced;
+    d.layout = layout;
+    d.node_count = tree->node_count;
+    for (k = 0; k < reduced->node_count; k++) {
+        d.node_count += reduced->ids[k] >= tree->node_count;
+    }
+    d.positions = (float *)sdv__take(&a, 3 * (uint64_t)d.node_count, sizeof *d.positions);
+    d.radii = (float *)sdv__take(&a, d.node_count, sizeof *d.radii);
+    d.segments = (sdv_segment *)sdv__take(&a, d.node_count, sizeof *d.segments);
+    if (d.positions && d.radii && d.segments) {
+        sdv__drawing_page(&d, desc);
+        for (k = 0; k < reduced->node_count; k++) {
+            sdv__drawing_edge(&d, k);
+        }
+        out.node_count = d.node_count;
+        out.positions = d.positions;
+        out.radii = d.radii;
+        out.segment_count = d.segment_count;
+        out.segments = d.segments;
+        result = sdv_tree_build(&silent, &out, drawing);
+    }
+    sdv__give(&a, d.positions);
+    sdv__give(&a, d.radii);
+    sdv__give(&a, d.segments);
+    return result == LAO_OK ? LAO_OK : sdv__fail(host, SDV_LOG_MEMORY, "drawing a layout");
 }
 
 /* ================================================================================================

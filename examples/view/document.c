@@ -178,6 +178,13 @@ static bool list_settings(document *doc) {
 void document_set(document *doc, uint32_t index, int setting, float value) {
     document_settings *s = &doc->settings[index];
     uint64_t bit = (uint64_t)1 << setting, *set = s->now;
+    if (s->module == vsf_module() &&
+        (bit & (VSF_SET(focus) | VSF_SET(focus_near) | VSF_SET(focus_far)))) {
+        if (doc->options.surface.focus_numbers) /* its depths are numbers from now on */
+            s->edited |= VSF_SET(focus) | VSF_SET(focus_near) | VSF_SET(focus_far);
+        doc->options.surface.focus = NULL;
+        doc->options.surface.focus_numbers = 0;
+    }
     values_of(s->now)[setting] = value;
     *set |= bit;
     s->edited |= bit;
@@ -213,6 +220,38 @@ void document_reset(document *doc, uint32_t index, int setting) {
     s->edited &= ~bit;
     if (doc->command == CLI_SURFACE && s->set == 1)
         doc->scene->sets[0].settings.set &= ~bit | *(uint64_t *)s->base;
+}
+
+/* Leaves the last "--set name=..." of the words out. */
+static void forget_edit(document *doc, const char *name) {
+    size_t length = strlen(name);
+    for (uint32_t i = doc->word_count; i-- > 1;) {
+        char **at = &doc->words[i - 1];
+        if (strcmp(at[0], "--set") != 0 || strncmp(at[1], name, length) != 0 ||
+            at[1][length] != '=')
+            continue;
+        free(at[0]);
+        free(at[1]);
+        memmove(at, at + 2, (doc->word_count - i) * sizeof *at); /* and the NULL */
+        doc->word_count -= 2;
+        return;
+    }
+}
+
+void document_inherit(document *doc, const document *from) {
+    for (uint32_t i = 0; i < doc->settings_count && i < from->settings_count; i++) {
+        document_settings *to = &doc->settings[i];
+        const document_settings *s = &from->settings[i];
+        for (uint32_t k = 0; to->module == s->module && k < s->module->setting_count; k++) {
+            uint64_t bit = (uint64_t)1 << k;
+            if (!(s->edited & bit))
+                continue;
+            values_of(to->base)[k] = values_of(s->base)[k];
+            *(uint64_t *)to->base = (*(uint64_t *)to->base & ~bit) | (*(uint64_t *)s->base & bit);
+            to->edited |= bit;
+            forget_edit(doc, s->module->settings[k].name);
+        }
+    }
 }
 
 float document_value(const document *doc, uint32_t index, int setting) {
@@ -267,10 +306,10 @@ static bool load(document *doc) {
     }
     if (doc->command == CLI_VESSEL) {
         doc->scene = &doc->tree.scene;
-        return cli_tree_load(&doc->options, 0, &doc->tree) && cli_tree_prepare(&doc->tree);
+        return cli_tree_load(&doc->options, NULL, 0, &doc->tree) && cli_tree_prepare(&doc->tree);
     }
     doc->scene = &doc->wall.scene;
-    if (!cli_wall_load(&doc->options, &doc->wall))
+    if (!cli_wall_load(&doc->options, NULL, &doc->wall))
         return false;
     if (doc->wall.lit) { /* both are one source's, but for what the surface has not */
         doc->scene->sets[0].settings = doc->scene->sets[1].settings;
@@ -374,8 +413,9 @@ bool document_surround(void *user, picture *p) {
 /* Flags of the words that the viewer says itself: how many words each takes. */
 static int words_dropped(const char *word) {
     static const char *const names[] = {
-        "--camera",  "--size",   "--time", "--view",    "--out",     "--save-camera", "--dump",
-        "--timings", "--frames", "--fps",  "--backend", "--outline", "--margin",      "-o"};
+        "--camera",      "--size",    "--time",    "--view",   "--out",
+        "--save-camera", "--dump",    "--timings", "--frames", "--fps",
+        "--backend",     "--outline", "--margin",  "-o",       "--focus"};
     if (strcmp(word, "--ortho") == 0 || strcmp(word, "--backdrop") == 0)
         return 1;
     for (size_t i = 0; i < sizeof names / sizeof *names; i++) {
@@ -450,6 +490,10 @@ static char *write_command(const document *doc, const cli_shot *shot, const char
         cli_shortest(shot->time, time, sizeof time);
         put(&t, plain, "--time");
         put(&t, plain, time);
+    }
+    if (doc->options.surface.focus) {
+        put(&t, plain, "--focus");
+        put(&t, plain, doc->options.surface.focus);
     }
     put(&t, plain, "--camera");
     put(&t, plain, camera ? camera : "");

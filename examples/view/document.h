@@ -50,6 +50,10 @@ float document_value(const document *doc, uint32_t index, int setting);
 /* Must the document be opened again for an edit of this setting to show? */
 bool document_reloads(const document *doc, uint32_t index, int setting);
 
+/* `doc` was opened with the words of `from`, edits among them: they are edits in it too, which can
+ * be taken back. */
+void document_inherit(document *doc, const document *from);
+
 /* Shows the lines of a time, or all of them. */
 void document_show_time(document *doc, bool shown);
 bool document_shows_time(const document *doc);

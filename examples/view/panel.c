@@ -14,6 +14,7 @@
 /* ---- scene ------------------------------------------------------------------------------- */
 
 static void open_words(view *v, const char *const *words, uint32_t count) {
+    v->hands.reopening = false;
     loader_start(v->loader, words, count);
 }
 
@@ -229,12 +230,12 @@ static void picture_tab(view *v) {
     ui_input("##picture file", v->shot_path, sizeof v->shot_path, "picture.png");
     ui_width_left(&width);
     ui_width(0.36f * width);
-    ui_slider_int("##wide", &v->shot_size[0], 16, 8192);
+    ui_slider_int("##wide", &v->shot_size[0], 16, 8192, "%d");
     ui_same_line();
     ui_text("x");
     ui_same_line();
     ui_width(0.36f * width);
-    ui_slider_int("##high", &v->shot_size[1], 16, 8192);
+    ui_slider_int("##high", &v->shot_size[1], 16, 8192, "%d");
     ui_help("Ctrl and a click: type the number");
     if (ui_button("As in the window")) {
         v->shot_size[0] = v->picture.width;
@@ -254,25 +255,11 @@ static void picture_tab(view *v) {
         trace(v, "command %s", command);
     }
     free(command);
+    ui_space();
+    film_widgets(v);
 }
 
 /* ---- all of it --------------------------------------------------------------------------- */
-
-/* The blur of a surface leaves what is as near as the picked place sharp. */
-static void focus_here(view *v) {
-    double forward[3], depth = 0, length = 0;
-    float near = 0.1f * v->shot.sphere[3];
-    for (int k = 0; k < 3; k++) {
-        forward[k] = v->shot.camera.center[k] - v->shot.camera.eye[k];
-        length += forward[k] * forward[k];
-    }
-    for (int k = 0; k < 3; k++)
-        depth += (v->picked.at[k] - v->shot.camera.eye[k]) * forward[k] / sqrt(length);
-    document_set(v->doc, 0, VSF_SETTING_ID_focus, 1);
-    document_set(v->doc, 0, VSF_SETTING_ID_focus_near, (float)depth - near);
-    document_set(v->doc, 0, VSF_SETTING_ID_focus_far, (float)depth + near);
-    stage_changed(v, false);
-}
 
 /* What was clicked: words below, a mark in the picture. */
 static void picked_text(view *v, window_rect place) {
@@ -282,6 +269,7 @@ static void picked_text(view *v, window_rect place) {
     ui_panel("Picked", (window_rect){place.x, place.y + place.height - (int)height, place.width,
                                      (int)height});
     ui_line();
+    ui_disable(v->film.running);
     if (ui_small_button("Look there")) {
         for (int k = 0; k < 3; k++) {
             v->shot.camera.eye[k] += v->picked.at[k] - v->shot.camera.center[k];
@@ -291,13 +279,13 @@ static void picked_text(view *v, window_rect place) {
     }
     ui_help("turn around this place");
     ui_same_line();
-    if (v->doc->command == CLI_SURFACE && ui_small_button("Focus here"))
-        focus_here(v);
-    ui_same_line();
     if (ui_small_button("Forget")) {
         memset(&v->picked, 0, sizeof v->picked);
+        v->hands.pathing = false;
         stage_select(v);
     }
+    hands_buttons(v);
+    ui_disable_end();
     ui_text_wrapped(v->picked.text);
     ui_panel_end();
 }
@@ -316,6 +304,7 @@ static void mark_picked(const view *v) {
 
 static void left(view *v, window_rect place) {
     ui_panel("Panel", place);
+    ui_disable(v->film.running);
     if (ui_tabs("tabs")) {
         if (ui_tab("Scene")) {
             scene_tab(v);
@@ -343,6 +332,7 @@ static void left(view *v, window_rect place) {
         }
         ui_tabs_end();
     }
+    ui_disable_end();
     ui_panel_end();
 }
 
@@ -415,7 +405,10 @@ void panel_draw(view *v) {
     if (memcmp(&before, &v->picture, sizeof before) != 0)
         v->dirty = true;
     mark_picked(v);
+    tree_marks(v);
+    hands_marks(v);
     if (v->compare)
         compare_marks(v);
+    film_panel(v);
     said(v);
 }

@@ -97,6 +97,7 @@ void player_panel(view *v, window_rect place) {
     bool shown = document_shows_time(v->doc) || v->doc->command == CLI_SURFACE;
     player_range(v, &first, &length);
     ui_panel("Player", place);
+    ui_disable(v->film.running);
     if (ui_button(v->player.playing ? "Pause##play" : "Play##play"))
         player_toggle(v);
     ui_same_line();
@@ -128,5 +129,6 @@ void player_panel(view *v, window_rect place) {
         ui_help("show the lines around the time alone, or all of them");
     }
     draw_timeline(v, first, length);
+    ui_disable_end();
     ui_panel_end();
 }

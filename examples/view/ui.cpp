@@ -58,7 +58,7 @@ void look(float scale) {
     style.FrameRounding = 3;
     style.GrabRounding = 3;
     style.WindowBorderSize = 0;
-    style.FramePadding = ImVec2(6, 3);
+    style.FramePadding = ImVec2(5, 3);
     style.ItemSpacing = ImVec2(7, 5);
     style.ScrollbarSize = 12;
     style.Colors[ImGuiCol_WindowBg] = ImVec4(background[0], background[1], background[2], 1);
@@ -309,9 +309,9 @@ bool ui_slider(const char *label, float *value, float low, float high, const cha
         label, ImGui::SliderFloat(label, value, low, high, format, ImGuiSliderFlags_AlwaysClamp));
 }
 
-bool ui_slider_int(const char *label, int *value, int low, int high) {
+bool ui_slider_int(const char *label, int *value, int low, int high, const char *format) {
     return placed(label,
-                  ImGui::SliderInt(label, value, low, high, "%d", ImGuiSliderFlags_AlwaysClamp));
+                  ImGui::SliderInt(label, value, low, high, format, ImGuiSliderFlags_AlwaysClamp));
 }
 
 bool ui_drag(const char *label, float *value, float speed, float low, float high,

@@ -73,7 +73,7 @@ bool ui_choice(const char *label, bool chosen);
 /* choices: "a|b|c" */
 bool ui_combo(const char *label, int *chosen, const char *choices);
 bool ui_slider(const char *label, float *value, float low, float high, const char *format);
-bool ui_slider_int(const char *label, int *value, int low, int high);
+bool ui_slider_int(const char *label, int *value, int low, int high, const char *format);
 /* Dragged without an end; steps of `speed`. */
 bool ui_drag(const char *label, float *value, float speed, float low, float high,
              const char *format);

@@ -353,6 +353,48 @@ static void with_shapes(void **state) {
     subject_free(&tree);
 }
 
+/* The 2D layout of a tree is a tree in a plane: drawn into a view of its own, by both backends
+ * alike and as C says; what is under a node of the layout is an edge at it. */
+static void layouts(void **state) {
+    subject tree, flat;
+    sdv_reduced reduced;
+    sdv_layout layout;
+    scene s;
+    (void)state;
+    for (uint32_t radial = 0; radial < 2; radial++) {
+        const sdv_drawing_desc desc = {48, 36, radial, 0.8f};
+        const sdv_grid_desc cells = {96, NULL, 0, {0, 0, 0}};
+        subject_make(&tree, 90, 4);
+        memset(&flat, 0, sizeof flat);
+        assert_int_equal(sdv_reduce(NULL, &tree.tree, &reduced), LAO_OK);
+        assert_int_equal(sdv_layout_make(NULL, &tree.tree, &reduced, NULL, &layout), LAO_OK);
+        assert_int_equal(sdv_layout_tree(NULL, &tree.tree, &reduced, &layout, &desc, &flat.tree),
+                         LAO_OK);
+        assert_int_equal(sdv_grid_build(NULL, &flat.tree, &cells, &flat.grid), LAO_OK);
+        flat.colors = calloc(flat.grid.cone_count, 8);
+        assert_non_null(flat.colors);
+        for (uint32_t i = 0; i < 2 * flat.grid.cone_count;
+             i++) { /* a node's colour is its number */
+            flat.colors[4 * i] = (uint8_t)(flat.grid.cone_nodes[i] + 60);
+            flat.colors[4 * i + 3] = 255;
+        }
+        assert_int_equal(sdv_object_make(NULL, &flat.grid, flat.colors, &flat.object), LAO_OK);
+        scene_make(&s, &flat);
+        memset(&s.shot.camera, 0, sizeof s.shot.camera);
+        for (int k = 0; k < 16; k += 5)
+            s.shot.camera.view[k] = 1;
+        s.shot.camera.view[12] = -24; /* above the middle of the page */
+        s.shot.camera.view[13] = -18;
+        s.shot.camera.view[14] = -20;
+        render_orthographic(&s.shot.camera, 36, (double)WIDTH / HEIGHT, 1, 40);
+        check(&s, &flat, 200);
+        subject_free(&flat);
+        sdv_layout_free(&layout);
+        sdv_reduced_free(&reduced);
+        subject_free(&tree);
+    }
+}
+
 /* Lines and a tree hide each other by depth, in either order of the sets. */
 static void among_lines(void **state) {
     subject tree;
@@ -407,7 +449,7 @@ int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(perspective), cmocka_unit_test(orthographic),
         cmocka_unit_test(from_within), cmocka_unit_test(with_shapes),
-        cmocka_unit_test(among_lines),
+        cmocka_unit_test(layouts),     cmocka_unit_test(among_lines),
     };
     return cmocka_run_group_tests(tests, open_all, close_all);
 }

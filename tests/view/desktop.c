@@ -170,6 +170,17 @@ bool viewer_said(desktop *d, const char *begin) {
     return false;
 }
 
+double viewer_memory(desktop *d) {
+    char path[64];
+    long pages = 0;
+    snprintf(path, sizeof path, "/proc/%ld/statm", (long)d->viewer);
+    FILE *file = fopen(path, "r");
+    assert_non_null(file);
+    assert_int_equal(fscanf(file, "%*d %ld", &pages), 1);
+    fclose(file);
+    return (double)pages * (double)sysconf(_SC_PAGESIZE) / 1048576;
+}
+
 /* The window without a manager is a child of the root. */
 static Window find_window(desktop *d) {
     Window root = DefaultRootWindow(d->display), parent, *children = NULL, found = 0;

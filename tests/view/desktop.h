@@ -28,6 +28,9 @@ void viewer_rests(desktop *d, double seconds);
 /* Has a line beginning so been said since the start? */
 bool viewer_said(desktop *d, const char *begin);
 
+/* What the viewer has in memory now, MB. */
+double viewer_memory(desktop *d);
+
 /* Clicks into the middle of a widget, once it is there. */
 void user_clicks(desktop *d, const char *label);
 /* The place of a widget, once it is there: x, y, width, height. */

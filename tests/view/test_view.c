@@ -19,6 +19,7 @@
 enum { WIDTH = 820, HEIGHT = 520 };
 
 static const char *viewer, *program; /* paths */
+static char programs[4096];          /* where others are looked for */
 
 typedef struct fixture {
     const char *backend;
@@ -113,9 +114,10 @@ static void run_command(const char *command, const char *output) {
     char line[8192];
     assert_true(strncmp(command, "lineao ", 7) == 0);
     snprintf(line, sizeof line, "'%s' %s", program, command + 7);
-    char *out = strstr(line, " -o ");
+    char *out = strstr(line, " -o "), more[256];
     assert_non_null(out);
-    snprintf(out, sizeof line - (size_t)(out - line), " -o %s", output);
+    snprintf(more, sizeof more, "%s", out + 4 + strcspn(out + 4, " ")); /* behind the name */
+    snprintf(out, sizeof line - (size_t)(out - line), " -o %s%s", output, more);
     assert_int_equal(system(line), 0);
 }
 
@@ -166,11 +168,160 @@ static void writes_what_the_program_writes(desktop *d, const char *setting) {
     assert_same_file("picture.png", "program.png");
 }
 
+/* Saves the picture and hears its command line, both of them of the window's size. */
+static void save(desktop *d, char command[8192]) {
+    user_clicks(d, "Save");
+    user_clicks(d, "As in the window");
+    viewer_rests(d, 0.4); /* the line that is shown has another length than the last time */
+    user_clicks(d, "Save picture");
+    assert_string_equal(viewer_hears(d, "saved "), "picture.png");
+    user_clicks(d, "Copy command line");
+    snprintf(command, 8192, "%s", viewer_hears(d, "command "));
+}
+
+/* The middle of the picture, which is beside panels of 330 px. */
+static void click_middle(desktop *d, int right) {
+    user_points(d, 330 + (WIDTH - 330) / 2 + right, 240);
+    user_presses(d, 1, true);
+    user_presses(d, 1, false);
+}
+
+/* The wall's contours follow the camera, and the focus the place that was clicked. */
+static void focuses_surfaces(fixture *f) {
+    char command[8192];
+    desktop *d = f->desktop;
+    click_middle(d, 0);
+    assert_int_equal(viewer_hears(d, "picked ")[0], '3');
+    user_clicks(d, "Focus here");
+    assert_non_null(strchr(viewer_hears(d, "focus "), ','));
+    viewer_hears(d, "frame");
+    save(d, command);
+    assert_non_null(strstr(command, "--focus "));
+    run_command(command, "program.png");
+    assert_same_file("picture.png", "program.png");
+    user_clicks(d, "Undo");
+    assert_string_equal(viewer_hears(d, "focus "), "");
+    save(d, command);
+    assert_null(strstr(command, "--focus "));
+    run_command(command, "sharp.png");
+    assert_same_file("picture.png", "sharp.png");
+    assert_int_not_equal(system("cmp -s program.png sharp.png"), 0); /* the blur was one */
+}
+
 static void saves_surfaces(void **state) {
-    static const char *const words[] = {"surface", "--ssaa", "1", NULL};
+    static const char *const words[] = {"surface", "--scene",    "aneurysm", "--ssaa",
+                                        "1",       "--contours", "0.3",      NULL};
     fixture *f = *state;
     start(f, words);
     writes_what_the_program_writes(f->desktop, "opacity");
+    focuses_surfaces(f);
+    quit(f);
+}
+
+/* A tree of which a branch leads through the middle of the picture. */
+static const char tree_file[] =
+    "1 1 0 0 0 4 -1\n2 1 0 0 30 3 1\n3 1 10 0 50 2 2\n4 1 -10 0 50 2 2\n";
+static void write_file(const char *path, const char *text);
+
+/* Hears that the document is open again, with what was placed, and saves its picture, which is that
+ * of the command line. */
+static void assert_placed(desktop *d, const char *flag, bool placed) {
+    char command[8192];
+    viewer_hears(d, "opened vessel");
+    viewer_hears(d, "frame");
+    viewer_rests(d, 0.6);
+    save(d, command);
+    assert_true((strstr(command, flag) != NULL) == placed);
+    run_command(command, "program.png");
+    assert_same_file("picture.png", "program.png");
+}
+
+/* A target, a path of two clicks, a cut; and back. */
+static void places_on_trees(void **state) {
+    static const char *const words[] = {
+        "vessel",   "aim.swc",
+        "--unit",   "mm",
+        "--grid",   "32",
+        "--ssaa",   "1",
+        "--camera", "{\"eye\":[0,-200,25],\"center\":[0,0,25],\"up\":[0,0,1],\"ortho_height\":80}",
+        NULL};
+    fixture *f = *state;
+    desktop *d = f->desktop;
+    write_file("aim.swc", tree_file);
+    start(f, words);
+    click_middle(d, 0);
+    assert_int_equal(viewer_hears(d, "picked ")[0], '2');
+    user_clicks(d, "Target here");
+    assert_placed(d, " --target ", true);
+    user_clicks(d, "Path to here");
+    click_middle(d, 150); /* beside the vessels */
+    assert_placed(d, " --path ", true);
+    click_middle(d, 0);
+    user_clicks(d, "Cut open here");
+    assert_placed(d, " --subtract sphere:", true);
+    user_clicks(d, "Tree");
+    user_clicks(d, "Undo");
+    assert_placed(d, " --subtract ", false);
+    user_clicks(d, "Tree");
+    user_clicks(d, "Take away");
+    assert_placed(d, " --path ", false);
+    quit(f);
+}
+
+/* ---- videos -------------------------------------------------------------------------------- */
+
+static const char *const film_words[] = {"render", "--scene", "flow", "--lines",  "60", "--width",
+                                         "1",      "--ssaa",  "1",    "--frames", "3",  NULL};
+
+/* In place of ffmpeg, which is looked for in the folder of the test alone. */
+static void make_ffmpeg(const char *last_line) {
+    char text[256];
+    snprintf(text, sizeof text, "#!/bin/sh\nfor name; do :; done\n%s\n", last_line);
+    write_file("ffmpeg.new", text);
+    assert_int_equal(chmod("ffmpeg.new", 0755), 0);
+    assert_int_equal(rename("ffmpeg.new", "ffmpeg"), 0);
+}
+
+static void film(desktop *d, const char *end) {
+    user_clicks(d, "Save video");
+    viewer_hears(d, "video begins");
+    assert_string_equal(viewer_hears(d, "video "), end);
+}
+
+/* Its frames are those of the program; without ffmpeg, or when it fails or is stopped, there is no
+ * file, and the viewer says why. */
+static void makes_videos(void **state) {
+    fixture *f = *state;
+    desktop *d = f->desktop;
+    char command[8192], folder[900];
+    assert_non_null(getcwd(folder, sizeof folder));
+    setenv("PATH", folder, 1);
+    make_ffmpeg("/bin/cat > \"$name\"");
+    start(f, film_words);
+    user_clicks(d, "Save");
+    user_clicks(d, "As in the window");
+    film(d, "saved video.mp4");
+    user_clicks(d, "Copy its command line");
+    snprintf(command, sizeof command, "%s", viewer_hears(d, "command "));
+    assert_non_null(strstr(command, " --frames 3 --fps 25"));
+    run_command(command, "program.mp4");
+    setenv("PATH", programs, 1);
+    assert_int_equal(system("test -s video.mp4 && cmp video.mp4 program.mp4"), 0);
+    assert_int_equal(system("rm video.mp4 program.mp4"), 0);
+    make_ffmpeg("/bin/cat > /dev/null; echo it broke >&2; exit 3");
+    film(d, "unsaved video.mp4");
+    assert_non_null(strstr(viewer_hears(d, "error "), "ffmpeg: it broke"));
+    viewer_rests(d, 0.6);
+    user_clicks(d, "Close");
+    make_ffmpeg("/bin/sleep 1; /bin/cat > /dev/null"); /* its pipe is full at the first frame */
+    user_clicks(d, "Save video");
+    viewer_hears(d, "video begins");
+    user_types(d, "Escape");
+    assert_string_equal(viewer_hears(d, "video "), "unsaved video.mp4");
+    assert_int_equal(remove("ffmpeg"), 0);
+    user_clicks(d, "Save video");
+    assert_non_null(strstr(viewer_hears(d, "error "), "ffmpeg is not in PATH"));
+    assert_int_not_equal(system("ls | grep -q '^video\\|\\.video'"), 0); /* nor a part of one */
     quit(f);
 }
 
@@ -208,7 +359,7 @@ static void write_file(const char *path, const char *text) {
 static void opens_what_is_dropped(desktop *d) {
     char path[1024], folder[900];
     assert_non_null(getcwd(folder, sizeof folder));
-    write_file("tree.swc", "1 1 0 0 0 4 -1\n2 1 0 0 30 3 1\n3 1 10 0 50 2 2\n4 1 -10 0 50 2 2\n");
+    write_file("tree.swc", tree_file);
     snprintf(path, sizeof path, "%s/tree.swc", folder);
     user_drops(d, path);
     assert_string_equal(viewer_hears(d, "opened "), "vessel tree.swc");
@@ -308,6 +459,7 @@ static int set_up(void **state) {
         print_error("Xvfb cannot be started; ./run setup installs it\n");
         return -1;
     }
+    snprintf(programs, sizeof programs, "%s", getenv("PATH"));
     strcpy(f->folder, "view_XXXXXX");
     if (!mkdtemp(f->folder) || chdir(f->folder) != 0 || !getcwd(cache, sizeof cache))
         return -1;
@@ -319,6 +471,7 @@ static int set_up(void **state) {
 static int clean_up(void **state) {
     fixture *f = *state;
     viewer_kill(f->desktop);
+    setenv("PATH", programs, 1);
     return 0;
 }
 
@@ -344,6 +497,8 @@ int main(int argc, char **argv) {
         {"shows_lines", shows_lines, NULL, clean_up, &f},
         {"saves_surfaces", saves_surfaces, NULL, clean_up, &f},
         {"saves_trees", saves_trees, NULL, clean_up, &f},
+        {"places_on_trees", places_on_trees, NULL, clean_up, &f},
+        {"makes_videos", makes_videos, NULL, clean_up, &f},
         {"picks_and_opens", picks_and_opens, NULL, clean_up, &f},
     };
     void *state = &f;
