@@ -490,6 +490,24 @@ typedef struct sdv_pull_push_desc {
 SDV_API lao_result sdv_pull_push(const sdv_host *host, const sdv_pull_push_desc *desc,
                                  uint32_t *empty);
 
+/* X as SDV_SETTINGS, below: of the same on the device. */
+#define SDV_PULL_PUSH_SETTINGS(X)                                                                  \
+    X(pull, ENUM, 0, 1, 0, 1, "", "mean|sum", "weight of a child: 1/4, 1")                         \
+    X(push, ENUM, 0, 1, 0, 1, "", "equal|spline", "the 4 nearest parents: 1/4; 9, 3, 3, 1 / 16")   \
+    X(exponent, INT, 1, 1023, 1, 1, "", "", "k: how little a pixel takes over from its parents")
+typedef struct sdv_pull_push_settings {
+    uint64_t set;
+    float pull, push, exponent;
+} sdv_pull_push_settings;
+
+/* A module (lao_desc.modules) that fills a host's own image in lao_render, to the same bits as
+   sdv_pull_push. Each frame imports "pull_push_image" (RGBA32F; three channels and the weight; as
+   large as the view, row 0 at the bottom) and (Optional) "pull_push_result", an image of the host's
+   that is written (LAO_HOST_WRITABLE); lao_read knows it as "pull_push_filled" too. Settings: of
+   the frame's first set, which need hold nothing else. More channels: more frames. Static. Thread:
+   any. */
+SDV_API const lao_module *sdv_pull_push_module(void);
+
 /* ------------------------------------------------------------------------------------------------
  * drawing: a module for lao_desc.modules, whose object is a grid */
 
@@ -2194,11 +2212,14 @@ LAO_FN float sdv_style_tone(float facing, float ambient, float diffuse, float li
     return lao_clamp01(r);
 }
 /* What the void keeps of its ink where the ray passes a vessel at d_min mm: all beside it, nothing
-   from `reach` mm on, and all everywhere without a reach. */
-LAO_FN float sdv_void_share(float d_min, float reach) {
-    LAO_EXACT float near_ = lao_clamp01(1.0f - lao_max(d_min, 0.0f) / lao_max(reach, 1.0e-6f));
-    LAO_EXACT float r = near_ * near_ * (3.0f - 2.0f * near_);
-    return reach > 0.0f ? r : 1.0f;
+   from `reach` mm on (0: no end), and nothing where it is so steep that strokes would be grey. wide:
+   periods per pixel. */
+LAO_FN float sdv_void_share(float d_min, float reach, float wide) {
+    LAO_EXACT float part = lao_clamp01(1.0f - lao_max(d_min, 0.0f) / lao_max(reach, 1.0e-6f));
+    LAO_EXACT float all = part * part * (3.0f - 2.0f * part);
+    LAO_EXACT float seen = lao_clamp01(2.0f - 2.0f * wide / SDV_HALO_FOOTPRINT);
+    LAO_EXACT float r = seen * (reach > 0.0f ? all : 1.0f);
+    return r;
 }
 /* Red near, blue far (METHODS 6.1, RSH06). */
 LAO_FN lao_v3 sdv_chromadepth(float depth) {
@@ -5909,7 +5930,6 @@ static const lao_setting_row sdv__settings[] = {
 #define SDV__ROW(name, type, minimum, maximum, standard, structural, unit, choices, help) \
     {#name, LAO_SETTING_##type, minimum, maximum, standard, structural, unit, choices, help},
     SDV_SETTINGS(SDV__ROW)
-#undef SDV__ROW
 };
 
 static const lao_module sdv__module = {
@@ -5921,6 +5941,52 @@ static const lao_module sdv__module = {
     sdv__buffers, (uint32_t)(sizeof sdv__buffers / sizeof sdv__buffers[0])
 };
 // clang-format on
+
+/* ---- pull-push of a host's image */
+// clang-format off
+#define SDV__OF_HOST {"@pull_push_image", '>', 0}
+static const lao_image_row sdv__pull_push_images[] = {
+    {"pull_push_image",  LAO_FORMAT_HOST,    LAO_SIZE_VIEW, 0, 0, NULL, LAO_IMAGE_IMPORT, LAO_ENCODING_PLAIN, {0, 0, 0, 0}, {NULL, 0, 0}, {NULL, NULL, NULL, NULL}},
+    {"pull_push_result", LAO_FORMAT_HOST,    LAO_SIZE_VIEW, 0, 0, NULL, LAO_IMAGE_IMPORT, LAO_ENCODING_PLAIN, {0, 0, 0, 0}, {NULL, 0, 0}, {NULL, NULL, NULL, NULL}},
+    {"pull_push_level",  LAO_FORMAT_RGBA32F, LAO_SIZE_VIEW, 0, 0, "*",  0,                LAO_ENCODING_PLAIN, {0, 0, 0, 0}, {NULL, 0, 0}, {NULL, NULL, NULL, NULL}},
+    {"pull_push_filled", LAO_FORMAT_RGBA32F, LAO_SIZE_VIEW, 0, 0, "*",  0,                LAO_ENCODING_PLAIN, {0, 0, 0, 0}, {NULL, 0, 0}, {NULL, NULL, NULL, NULL}}
+};
+static const lao_pass_row sdv__pull_push_passes[] = {
+    {"pull_push_start", LAO_PASS_FULLSCREEN, "vessel_push", 2, LAO_STAGE_DRAW, LAO_SCOPE_FRAME, LAO_REPEAT_NONE, NULL, LAO_BLEND_NONE, LAO_DEPTH_NONE, LAO_CULL_NONE, {SDV__OF_HOST},
+     {SDV__WRITE("pull_push_level")},
+     {SDV__READ("pull_push_image"), SDV__READ("pull_push_image")}},
+    {"pull_push_mean", LAO_PASS_FULLSCREEN, "vessel_pull", SDV_PULL_MEAN, LAO_STAGE_DRAW, LAO_SCOPE_FRAME, LAO_REPEAT_LEVELS_UP, NULL, LAO_BLEND_NONE, LAO_DEPTH_NONE, LAO_CULL_NONE, {SDV__OF_HOST, {"pull", '=', SDV_PULL_MEAN}},
+     {SDV__WRITE("pull_push_level")},
+     {SDV__FINER("pull_push_level")}},
+    {"pull_push_sum", LAO_PASS_FULLSCREEN, "vessel_pull", SDV_PULL_SUM, LAO_STAGE_DRAW, LAO_SCOPE_FRAME, LAO_REPEAT_LEVELS_UP, NULL, LAO_BLEND_NONE, LAO_DEPTH_NONE, LAO_CULL_NONE, {SDV__OF_HOST, {"pull", '=', SDV_PULL_SUM}},
+     {SDV__WRITE("pull_push_level")},
+     {SDV__FINER("pull_push_level")}},
+    {"pull_push_top", LAO_PASS_FULLSCREEN, "vessel_push", 1, LAO_STAGE_DRAW, LAO_SCOPE_FRAME, LAO_REPEAT_NONE, NULL, LAO_BLEND_NONE, LAO_DEPTH_NONE, LAO_CULL_NONE, {SDV__OF_HOST},
+     {SDV__TOP("pull_push_filled")},
+     {SDV__TOP("pull_push_level"), SDV__TOP("pull_push_level")}},
+    {"pull_push_down", LAO_PASS_FULLSCREEN, "vessel_push", 0, LAO_STAGE_DRAW, LAO_SCOPE_FRAME, LAO_REPEAT_LEVELS_DOWN, NULL, LAO_BLEND_NONE, LAO_DEPTH_NONE, LAO_CULL_NONE, {SDV__OF_HOST},
+     {SDV__WRITE("pull_push_filled")},
+     {SDV__READ("pull_push_level"), SDV__COARSER("pull_push_filled")}},
+    {"pull_push_result", LAO_PASS_FULLSCREEN, "vessel_push", 2, LAO_STAGE_DRAW, LAO_SCOPE_FRAME, LAO_REPEAT_NONE, NULL, LAO_BLEND_NONE, LAO_DEPTH_NONE, LAO_CULL_NONE, {SDV__OF_HOST, {"@pull_push_result", '>', 0}},
+     {SDV__WRITE("pull_push_result")},
+     {SDV__READ("pull_push_filled"), SDV__READ("pull_push_filled")}}
+};
+static const lao_setting_row sdv__pull_push_settings[] = {
+    SDV_PULL_PUSH_SETTINGS(SDV__ROW)
+};
+#undef SDV__ROW
+static const lao_module sdv__pull_push_module = {
+    "pull_push",
+    sdv__pull_push_passes, (uint32_t)(sizeof sdv__pull_push_passes / sizeof sdv__pull_push_passes[0]),
+    sdv__pull_push_images, (uint32_t)(sizeof sdv__pull_push_images / sizeof sdv__pull_push_images[0]),
+    sdv__pull_push_settings, (uint32_t)(sizeof sdv__pull_push_settings / sizeof sdv__pull_push_settings[0]),
+    NULL, 0, NULL, 0, NULL, 0
+};
+// clang-format on
+
+SDV_API const lao_module *sdv_pull_push_module(void) {
+    return &sdv__pull_push_module;
+}
 
 SDV_API void sdv_camera_margin(const lao_camera *camera, uint32_t width, uint32_t height,
                                uint32_t margin, lao_camera *wider) {

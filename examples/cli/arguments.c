@@ -116,7 +116,7 @@ static const flag_row flags[] = {
     {"--tolerance", NULL, "MM", FLAG_ABOVE, FLOWN, ALL(flow.tolerance), NULL, "error of a part of a step, for dopri (0.0001)"},
     {"--attributes", NULL, "NAME", FLAG_CHOICE, FLOWN, ALL(flow.attributes), "vorticity|curvature|all", "more per point: vorticity (1/s), curvature (1/mm) or all"},
     {"--names", NULL, "U,V,W[,MASK]", FLAG_TEXT, VOLUME, ALL(flow.names), NULL, "arrays of a volume: three components, or one vector: VELOCITY[,MASK]"},
-    {"--unit", NULL, "NAME", FLAG_CHOICE, ANY & ~CLI_INFO, ALL(flow.unit), "m/s|cm/s|mm/s", "of a volume's velocities: m/s (default), cm/s or mm/s"},
+    {"--unit", NULL, "NAME", FLAG_CHOICE, CLI_FLOW, ALL(flow.unit), "m/s|cm/s|mm/s", "of a volume's velocities: m/s (default), cm/s or mm/s"},
     {"--axes", NULL, "mm|grid", FLAG_CHOICE, VOLUME, ALL(flow.axes), "mm|grid", "of a volume's velocities: those of its mm (default) or of its voxels"},
     {"--spacing", NULL, "MM[,MM,MM]", FLAG_SPACING, VOLUME, ALL(flow.spacing), NULL, "size of a volume's voxels, where it tells none or a wrong one"},
     {"--time-step", NULL, "MS", FLAG_ABOVE, VOLUME, ALL(flow.time_step), NULL, "between a volume's frames"},
@@ -135,7 +135,7 @@ static const flag_row flags[] = {
     {"--frames", NULL, "N", FLAG_COUNT, CLI_RENDER, ALL(frames), NULL, "a sequence of pictures or a video over one period, or from the first time to the last"},
     {"--fps", NULL, "N", FLAG_COUNT, SHOT, ALL(fps), NULL, "frames per second of a video (25)"},
     {"--backdrop", NULL, NULL, FLAG_SWITCH, CLI_RENDER, ALL(backdrop), NULL, "of velocity volumes and the scene flow: the highest speeds of the beat behind the lines, the vessel's outline around"},
-    {"--shared-occlusion", NULL, NULL, FLAG_SWITCH, DRAWN, ALL(shared_occlusion), NULL, "FILEs occlude each other, not only themselves; settings from occlusion to shading are then the first FILE's"},
+    {"--shared-occlusion", NULL, NULL, FLAG_SWITCH, DRAWN, ALL(shared_occlusion), NULL, "FILEs of lines occlude each other, not only themselves; settings from occlusion to shading are then the first one's"},
     {"--outline", NULL, "MESH", FLAG_TEXT, CLI_RENDER, ALL(outline), NULL, "the silhouette of a vessel's wall (mm) behind the lines and its outline around: STL, PLY, OBJ, VTP or VTK"},
     {"--legend", NULL, "SIDE", FLAG_CHOICE, SHOT, ALL(legend), "off|left|right|bottom", "scale of each attribute's colours in the picture: off, left, right or bottom (off)"},
     {"--legend-title", NULL, "TEXT", FLAG_TEXT, SHOT, ALL(legend_title), NULL, "above the first scale (the attribute's name, and its unit if known)"},
@@ -147,7 +147,8 @@ static const flag_row flags[] = {
     {"--widest", NULL, "N", FLAG_COUNT, CLI_SHEET, ALL(widest), NULL, "pixels; wider pictures shrink by a whole factor (no limit)"},
     {"--json", NULL, NULL, FLAG_SWITCH, CLI_INFO | CLI_COMPARE | CLI_FLOW | CLI_VESSEL | CLI_SURFACE, ALL(json), NULL, "one JSON object on standard output"},
     {"--help", "-h", NULL, FLAG_SWITCH, ANY | CLI_SHEET | CLI_VESSEL | CLI_SURFACE, ALL(help), NULL, "this text"},
-    {"--color", NULL, "#rrggbb", FLAG_PAINT, BOTH, FILE_(color), NULL, "or r,g,b in 0..1, direction, line or the NAME of an attribute"},
+    {"--as", NULL, "KIND", FLAG_CHOICE, BOTH, FILE_(as), "lines|tree|surface", "draw the FILE as lines, tree or surface: where it holds several the lines are drawn, unless told; of a tree the surface too can be made"},
+    {"--color", NULL, "#rrggbb", FLAG_PAINT, BOTH, FILE_(color), NULL, "of lines: or r,g,b in 0..1, direction, line or the NAME of an attribute; of trees: or layout, radius, order or a NAME; of surfaces the NAME of an array of the vertices"},
     {"--colormap", NULL, "NAME", FLAG_CHOICE, BOTH, FILE_(colormap), COLOUR_MAPS, "of attributes: " COLOUR_MAPS " (viridis)"},
     {"--range", NULL, "A,B", FLAG_RANGE, BOTH, FILE_(range), NULL, "values at both ends of the colour map, or percentiles of all (2%,98%)"},
     {"--color", NULL, "NAME", FLAG_PAINT, CLI_VESSEL, FILE_(color), NULL, "layout (hue and saturation of the 2D layout), radius, order (of branching), distance, #rrggbb or the NAME of an attribute"},
@@ -156,7 +157,7 @@ static const flag_row flags[] = {
     {"--every", NULL, "N", FLAG_COUNT, TRACE, FILE_(every), NULL, "keep each N-th line"},
     {"--min-length", NULL, "MM", FLAG_LENGTH, TRACE, FILE_(min_length), NULL, "drop shorter lines (files: none; of a volume: shorter than two voxels)"},
     {"--bundle", NULL, "NAME", FLAG_TEXT, BOTH, FILE_(bundle), NULL, "keep the lines of this group (TRX group, TT cluster)"},
-    {"--unit", NULL, "NAME", FLAG_CHOICE, CLI_INFO, FILE_(unit), "mm|cm|um|m|m/s|cm/s|mm/s", "of trees and meshes: mm, cm, um or m, whatever the file tells or seems to be in; of volumes: m/s, cm/s or mm/s"},
+    {"--unit", NULL, "NAME", FLAG_CHOICE, CLI_INFO | BOTH, FILE_(unit), "mm|cm|um|m|m/s|cm/s|mm/s", "of trees and meshes: mm, cm, um or m, whatever the file tells or seems to be in; of volumes: m/s, cm/s or mm/s"},
     {"--unit", NULL, "NAME", FLAG_CHOICE, CLI_VESSEL, FILE_(unit), "mm|cm|um|m", "of the tree, whatever the file tells or seems to be in"},
     {"--set", NULL, "NAME=VALUE", FLAG_ASSIGN, DRAWN, FILE_(settings), NULL, "a setting, as its own flag does"},
 };
@@ -292,7 +293,9 @@ static module_row module_of(cli_command_bit command, int index) {
         return index == 0 ? surface : index == 1 ? lines : none;
     if (command & CLI_VESSEL)
         return index == 0 ? vessel : index == 1 ? layout : lines;
-    return index == 0 && command & (CLI_RENDER | CLI_COMPARE) ? lines : none;
+    if (command & BOTH)
+        return index == 0 ? lines : index == 1 ? vessel : surface;
+    return none;
 }
 
 /* A setting of one of the modules; row NULL: there is none. */
@@ -543,6 +546,15 @@ static const flag_row *find_flag(cli_command_bit command, const char *name, size
     return NULL;
 }
 
+uint32_t cli_flag_words(cli_command_bit command, const char *word, bool *of_file) {
+    const char *equals = strchr(word, '=');
+    const flag_row *row = find_flag(command, word, equals ? (size_t)(equals - word) : strlen(word));
+    *of_file = !row || row->per_file; /* the rest are settings */
+    if (word[0] != '-' || strcmp(word, "--") == 0)
+        return 0;
+    return equals || (row && row->type == FLAG_SWITCH) ? 1 : 2;
+}
+
 /* Flags of the table, then settings in the spelling of flags. */
 static const char *flag_name(const void *user, uint32_t index) {
     const parser *p = user;
@@ -785,9 +797,12 @@ void cli_print_flags(cli_command_bit command) {
                command & (CLI_VESSEL | CLI_SURFACE) ? "" : ", for all FILEs or for one");
     for (int m = 0; m < MODULES; m++) { /* of those for lines few do anything to vessels */
         const lao_module *module = module_of(command, m).module;
-        if (module && !(command & (CLI_VESSEL | CLI_SURFACE) && module == lao_lines_module()))
+        if (module && (command & BOTH ? m == 0 : module != lao_lines_module()))
             print_settings(module);
     }
+    if (command & BOTH)
+        printf("  Behind a tree those of lineao vessel --help, behind a surface those of lineao "
+               "surface\n  --help (both end in a list of settings).\n");
     if (command & (CLI_VESSEL | CLI_SURFACE))
         printf("  Those of lineao render --help are taken too; supersampling is --ssaa.\n");
 }

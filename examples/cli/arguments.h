@@ -57,7 +57,8 @@ typedef struct cli_source {
     uint32_t every;
     double min_length; /* mm; negative: none is given */
     const char *bundle;
-    const char *unit; /* of trees and meshes; NULL: as the file tells, or guessed */
+    const char *unit; /* of trees, meshes, volumes; NULL: as the file tells, or guessed */
+    const char *as;   /* what it is drawn as: "lines", "tree", "surface"; NULL: by its content */
 } cli_source;
 
 /* How velocity volumes are read and traced. Numbers are 0, texts NULL where nothing is given. */
@@ -135,6 +136,10 @@ typedef struct cli_options {
 /* Parses what stands behind the command's name. False: wrong usage, reported. Free in any case. */
 bool cli_parse(cli_command_bit command, int argc, char **argv, cli_options *out);
 void cli_options_free(cli_options *options);
+
+/* How many words a flag takes, itself among them; *of_file: does it hold for one FILE? 0: the word
+ * is no flag. */
+uint32_t cli_flag_words(cli_command_bit command, const char *word, bool *of_file);
 
 /* "#rrggbb", "#rrggbbaa", "r,g,b" or "r,g,b,a" in 0..1; else false. */
 bool cli_parse_color(const char *text, double color[4]);

@@ -5,6 +5,7 @@
 #include "scene_tree.h"
 
 #include <math.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <time.h>
@@ -32,12 +33,33 @@ static bool is_surface(const cli_tree *tree) {
     return tree->options->vessel.surface || tree->contents.kinds == IO_MESH;
 }
 
-static bool read_tree(cli_tree *out) {
+/* Positions about another origin than the tree's own. */
+static void move_origin(io_vessel *vessel, const double origin[3]) {
+    for (int k = 0; k < 3; k++) {
+        double shift = vessel->origin[k] - origin[k];
+        vessel->origin[k] = origin[k];
+        if (shift == 0)
+            continue;
+        for (uint32_t i = 0; i < vessel->tree.node_count; i++) {
+            float *p = &vessel->tree.nodes[i].x + k;
+            *p = (float)((double)*p + shift);
+        }
+        for (int i = 0; i < 2; i++)
+            vessel->tree.info.bounds[i][k] += (float)shift;
+    }
+}
+
+static bool read_tree(cli_tree *out, const cli_place *place) {
     io_error error;
-    return cli_read(out->source, IO_TREE | IO_MESH, &out->contents) &&
-           (is_surface(out) ||
-            io_vessel_build(&out->host, &out->contents.tree, &out->vessel, &error) ||
-            (cli_interrupted() ? cli_go_on() : cli_fail("%s: %s", out->name, error.text)));
+    if (!out->contents.kinds && !cli_read(out->source, IO_TREE | IO_MESH, &out->contents))
+        return false;
+    if (is_surface(out))
+        return true;
+    if (!io_vessel_build(&out->host, &out->contents.tree, &out->vessel, &error))
+        return cli_interrupted() ? cli_go_on() : cli_fail("%s: %s", out->name, error.text);
+    if (place && place->origin)
+        move_origin(&out->vessel, place->origin);
+    return true;
 }
 
 static bool make_tree(cli_tree *out) {
@@ -149,9 +171,14 @@ static bool measure(cli_tree *tree) {
     return ok;
 }
 
-bool cli_tree_load(const cli_options *options, uint32_t index, cli_tree *out) {
+bool cli_tree_load(const cli_options *options, const cli_place *place, uint32_t index,
+                   cli_tree *out) {
     const cli_vessel_options *vessel = &options->vessel;
     memset(out, 0, sizeof *out);
+    if (place) {
+        out->contents = *place->contents;
+        memset(place->contents, 0, sizeof *place->contents); /* moved */
+    }
     out->options = options;
     out->aim = index < vessel->target_count ? &vessel->targets[index] : NULL;
     if (out->aim)
@@ -165,7 +192,9 @@ bool cli_tree_load(const cli_options *options, uint32_t index, cli_tree *out) {
     out->host.job = cli_threads_job(out->threads, &out->progress);
     out->host.log = on_log;
     out->host.user = out;
-    bool ok = out->source->path ? read_tree(out) : options->vessel.surface ? true : make_tree(out);
+    bool ok = out->source->path         ? read_tree(out, place)
+              : options->vessel.surface ? true
+                                        : make_tree(out);
     ok = ok && (is_surface(out) ? cli_tree_mesh(out)
                                 : cli_target_make(out) && lay_out(out) && measure(out));
     cli_progress_end(&out->progress);
@@ -302,6 +331,7 @@ static void add_marker(cli_tree *tree) {
     tree->marker.settings.parameterization = tree->marker.settings.style =
         tree->marker.settings.void_style = 0;
     scene->sets[0].object = &tree->marker.object.desc;
+    scene->sets[0].tree = NULL;
     scene->sets[0].module_settings[0] = &tree->marker.settings;
     scene->count = 2;
 }
@@ -314,7 +344,7 @@ static bool make_scene(cli_tree *tree) {
     memset(set, 0, 2 * sizeof *set);
     scene->sets = set;
     scene->count = 1;
-    scene->module = sdv_module();
+    scene->modules[scene->module_count++] = sdv_module();
     camera_view("iso", scene->direction, scene->up);
     if (tree->options->view)
         camera_view(tree->options->view, scene->direction, scene->up);
@@ -323,6 +353,7 @@ static bool make_scene(cli_tree *tree) {
     set->name = tree->name;
     set->settings = tree->source->settings;
     set->object = &tree->object.desc;
+    set->tree = tree;
     make_settings(tree, &tree->settings);
     set->module_settings[0] = &tree->settings;
     if (!make_points(tree, &set->lines))
@@ -392,6 +423,51 @@ bool cli_tree_prepare(cli_tree *tree) {
     ok = ok && (!tree->carving.shapes.count || add_shapes(tree)) &&
          (!tree->aim || !tree->options->vessel.link || cli_marker_make(tree));
     return ok && make_scene(tree) && cli_tree_pattern(tree);
+}
+
+/* ---- dumps and warnings ----------------------------------------------------------------- */
+
+bool cli_tree_planes(void *user, cli_planes *planes) {
+    static const char *const names[3] = {"position.X", "position.Y", "position.Z"};
+    static const char *const behind[3] = {"bgposition.X", "bgposition.Y", "bgposition.Z"};
+    const cli_tree *tree = user;
+    size_t count;
+    const float *segment = cli_planes_find(planes, "segment.V", &count);
+    float *p[3], *b[3], *mask = cli_planes_add(planes, "mask.V");
+    float *distance = tree->target ? cli_planes_add(planes, "distance.V") : NULL;
+    if (!segment || !mask || (tree->target && !distance))
+        return segment != NULL || cli_fail("the dump has no segments");
+    for (int k = 0; k < 3; k++) {
+        p[k] = cli_planes_find(planes, names[k], &count);
+        b[k] = cli_planes_find(planes, behind[k], &count);
+    }
+    for (size_t i = 0; i < count; i++) {
+        bool covered = segment[i] != -1;
+        mask[i] = covered ? 1.0f : 0.0f;
+        if (distance)
+            distance[i] =
+                covered ? sdv_target_point(tree->target, lao_v3_make(p[0][i], p[1][i], p[2][i]))
+                        : SDV_FAR;
+        for (int k = 0; k < 3; k++) {
+            double o = tree->vessel.origin[k];
+            p[k][i] = covered ? (float)((double)p[k][i] + o) : 0.0f;
+            if (b[k])
+                b[k][i] = (float)((double)b[k][i] + o);
+        }
+    }
+    return true;
+}
+
+bool cli_tree_warning(const cli_tree *tree, uint32_t i, char *text, size_t size) {
+    const io_tree *read = &tree->contents.tree;
+    const sdv_tree *t = &tree->vessel.tree;
+    if (i < read->warning_count)
+        snprintf(text, size, "%s", read->warnings[i]);
+    else if (i - read->warning_count < t->warning_count)
+        sdv_tree_warning_text(t, i - read->warning_count, text, size);
+    else
+        return false;
+    return true;
 }
 
 void cli_tree_free(cli_tree *tree) {

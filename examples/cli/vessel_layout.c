@@ -78,7 +78,7 @@ static bool make_scene(drawing *d) {
         return false;
     memset(set, 0, sizeof *set);
     scene->count = 1;
-    scene->module = sdv_module();
+    scene->modules[scene->module_count++] = sdv_module();
     camera_view("axial", scene->direction, scene->up);
     make_settings(&d->settings);
     set->source = d->tree->source;

@@ -276,7 +276,7 @@ static void test_info_tree(void **state) {
     write_text("ring.swc", "1 1 0 0 0 2 2\n2 3 0 0 4 1.5 1\n");
     expect_fault(RUN("info ring.swc"), 1, "cycle");
     expect_fault(RUN("info tree.swc --unit mile"), 2, "mile");
-    expect_fault(RUN("render tree.swc -o tree.png"), 1, "vessel tree");
+    expect_fault(RUN("render tree.swc --as lines -o tree.png"), 1, "vessel tree");
 }
 
 /* An open box of two triangles, one of them told with vertices of its own. */
