@@ -8,6 +8,7 @@ LAO_TEX(4, sampler2D, nearnesses)
 LAO_TEX(5, sampler2D, scene_z)
 LAO_TEX(6, samplerBuffer, map)
 LAO_TEX(7, sampler2D, layer_z)
+LAO_TEX(8, sampler2D, left) /* 0: the layer before is empty */
 LAO_CONSTANT(0, lao_constant_variant)
 LAO_CONSTANT(1, lao_constant_shading)
 LAO_CONSTANT(2, lao_constant_falloff_form)
@@ -30,7 +31,11 @@ void main() {
         at_point = texelFetch(measures, item, 0);
         at_normal = texelFetch(nearnesses, item, 0);
     }
-    lao_emit(lao_project(lao_frame.projection, lao_transform(lao_frame.view, at_point.xyz)));
+    lao_v4 clip = lao_project(lao_frame.projection, lao_transform(lao_frame.view, at_point.xyz));
+    if (lao_constant_variant == 2 && texelFetch(left, ivec2(0), 0).x < 0.5) {
+        clip = lao_v4_make(2.0, 2.0, 2.0, 1.0); /* outside */
+    }
+    lao_emit(clip);
 }
 #endif
 

@@ -168,6 +168,7 @@ static void free_both(render_result results[2]) {
 static float nearness_of(const scene *s, const vsf_object *object, uint32_t vertex) {
     const float *pair = object->near_pair + 2 * (size_t)vertex;
     vsf_settings v;
+    memset(&v, 0, sizeof v);
     lao_settings_resolve(vsf_module(), &s->surface, &v.shading);
     return v.near_source > 0
                ? vsf_value_x(object->values[vertex], v.value_low, v.value_high)
@@ -214,6 +215,7 @@ static uint32_t check_lookup(const scene *s, const vsf_object *object,
     const render_image *lut = need(result, "surface_lut", 0);
     vsf_settings filled;
     uint32_t covered = 0;
+    memset(&filled, 0, sizeof filled);
     lao_settings_resolve(vsf_module(), &s->surface, &filled.shading);
     for (uint32_t y = 0; y < lut->height; y++) {
         for (uint32_t x = 0; x < lut->width; x++) {
@@ -645,6 +647,10 @@ static void layers(void **state) {
             }
         }
         assert_int_equal(deepest, 6);
+        if (most > 0) { /* six squares lie on each other: only the seventh layer behind is none */
+            assert_true(texel_of(need(&results[0], "surface_left", 0), 0, 0).x ==
+                        (most > 6 ? 0.0f : 1.0f));
+        }
         assert_in_range(checked, 15000, 4 * WIDTH * HEIGHT);
         assert_true(worst < 0.002); /* half floats, once a layer */
         free_both(results);

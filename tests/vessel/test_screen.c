@@ -585,16 +585,19 @@ static void patterns(void **state) {
 static void void_reach(void **state) {
     float last = 1;
     (void)state;
-    assert_true(sdv_void_share(0, 10) == 1 && sdv_void_share(-3, 10) == 1);
-    assert_true(sdv_void_share(10, 10) == 0 && sdv_void_share(SDV_FAR, 10) == 0);
-    assert_near(sdv_void_share(5, 10), 0.5, 1e-6);
+    assert_true(sdv_void_share(0, 10, 0) == 1 && sdv_void_share(-3, 10, 0) == 1);
+    assert_true(sdv_void_share(10, 10, 0) == 0 && sdv_void_share(SDV_FAR, 10, 0) == 0);
+    assert_near(sdv_void_share(5, 10, 0), 0.5, 1e-6);
     for (int i = 1; i <= 100; i++) {
-        float share = sdv_void_share((float)i, 100);
+        float share = sdv_void_share((float)i, 100, 0);
         assert_true(share < last && last - share < 0.0151f);
         last = share;
     }
-    assert_true(sdv_void_share(0, 0) == 1 && sdv_void_share(SDV_FAR, 0) == 1); /* no end */
+    assert_true(sdv_void_share(0, 0, 0) == 1 && sdv_void_share(SDV_FAR, 0, 0) == 1); /* no end */
     assert_near(sdv_near_miss_reach(1, 2, 3, 4, 5, 200), 10, 1e-5);
+    /* strokes of less than 7 pixels pale, those of less than 3 are not drawn */
+    assert_true(sdv_void_share(0, 10, 0.15f) == 1 && sdv_void_share(0, 0, 0.3f) == 0);
+    assert_near(sdv_void_share(0, 10, 0.225f), 0.5, 1e-6);
     assert_true(sdv_near_miss_reach(1, 20, 3, 4, 5, 200) == 20);
 }
 
