@@ -118,13 +118,13 @@ static lao_v3 color_of(const uint8_t *bytes) {
 }
 
 /* What the tree is combined with, and what its surfaces are coloured with; NULL: nothing. */
-typedef struct carving {
+typedef struct shaping {
     const sdv_shapes *shapes;
     const float *colors;
-} carving;
+} shaping;
 
 /* The colour of the vessel there, of the shape, or of the vessel that is nearest to it. */
-static lao_v3 color_at(const subject *tree, const carving *cut, lao_v4 hit, lao_v4 r) {
+static lao_v3 color_at(const subject *tree, const shaping *cut, lao_v4 hit, lao_v4 r) {
     lao_v3 p = lao_v3_make(hit.x, hit.y, hit.z);
     uint32_t cone = (uint32_t)hit.w;
     if (hit.w < 0) {
@@ -139,7 +139,7 @@ static lao_v3 color_at(const subject *tree, const carving *cut, lao_v4 hit, lao_
 }
 
 /* What the pixel shows; false: nothing is drawn. */
-static bool shade_of(const subject *tree, const carving *cut, const float *v,
+static bool shade_of(const subject *tree, const shaping *cut, const float *v,
                      const lao_frame_uniforms *frame, const sdv_ray *ray, lao_v4 hit, lao_v4 n,
                      lao_v4 r, lao_v3 *out) {
     lao_v3 normal = lao_v3_make(n.x, n.y, n.z), p = lao_v3_make(hit.x, hit.y, hit.z);
@@ -185,7 +185,7 @@ static bool shade_of(const subject *tree, const carving *cut, const float *v,
     return true;
 }
 
-static void check_shade(const scene *s, const subject *tree, const carving *cut,
+static void check_shade(const scene *s, const subject *tree, const shaping *cut,
                         const render_result *result) {
     const render_image *position = render_find(result, "vessel_position", 0);
     const render_image *normal = render_find(result, "vessel_normal", 0);
@@ -358,7 +358,7 @@ static void with_shapes(void **state) {
         const float colors[3 * SHAPES] = {-1, 0, 0, 0.9f, 0.5f, 0.1f, -1, 0, 0,
                                           0,  1, 0, 0,    0,    0,    -1, 0, 0};
         assert_int_equal(sdv_object_shapes(NULL, &c.shapes, colors, &tree.object), LAO_OK);
-        const carving seen = {&c.shapes, colors};
+        const shaping seen = {&c.shapes, colors};
         s.vessel.field_shadow = count > 2 ? 1.0f : 0.0f;
         for (int i = 0; i < 2; i++) {
             uint32_t cut = 0;
