@@ -275,7 +275,7 @@ typedef enum lao_repeat {
                                it and at its level; `repeat_setting` (optional): so often each turn */
 } lao_repeat;
 typedef enum lao_scope {
-    LAO_SCOPE_FRAME,
+    LAO_SCOPE_FRAME,  /* once, with the settings of the first set that its conditions hold for */
     LAO_SCOPE_PER_SET /* consecutive rows replay for each set; those that compose, behind all sets'
                          shading */
 } lao_scope;
@@ -303,7 +303,7 @@ typedef enum lao_depth_test {
 } lao_depth_test;
 
 #define LAO_MAX_BUFFERS 24 /* of all modules of a context */
-#define LAO_MAX_READS 28
+#define LAO_MAX_READS 16 /* texture units that every stage has at least (OpenGL 3.3, Vulkan) */
 #define LAO_MAX_WRITES 6
 #define LAO_MAX_CONSTANTS 12
 #define LAO_MAX_CONDITIONS 3
@@ -654,7 +654,8 @@ enum {
     LAO_FRAME_TIMINGS = 1,         /* measure every pass (GL: finishes after each; slow) */
     LAO_FRAME_SHARED_OCCLUSION = 2 /* sets occlude each other: all are drawn into one G-buffer,
                                       which is occluded and shaded once, with the first set's
-                                      settings; otherwise each occludes itself alone */
+                                      settings; otherwise each occludes itself alone. Objects of
+                                      further modules are drawn as ever */
 };
 
 typedef struct lao_frame {
@@ -927,7 +928,7 @@ typedef struct lao_plan_desc {
     uint32_t has_target;
     uint32_t item_count;                       /* the most that an object has */
     uint32_t further_items[LAO_FURTHER_ITEMS]; /* likewise */
-    const uint32_t *buffers;   /* per set: bit i: has lao_graph.buffers[i]; NULL: no set has any */
+    const uint32_t *buffers;   /* per set: bit i: has lao_graph.buffers[i]; NULL: lines alone */
     uint32_t shared_occlusion; /* LAO_FRAME_SHARED_OCCLUSION */
     const lao_shader *const
         *shaders; /* by index in lao_graph.shader_names; NULL entries allowed without constants */
@@ -1371,12 +1372,14 @@ LAO_FN float lao_acos(float x) {
     LAO_EXACT float s = (1.0f - c) * (1.0f + c);
     return lao_atan2(lao_sqrt(s), c);
 }
-/* x^n, 0 <= x <= 1, 0 <= n < 1024, by repeated squaring; results below 2^-100 are 0, because
-   denormal numbers on the way to them cost a CPU more than all the rest */
-LAO_FN float lao_power(float x, lao_int n) {
-    LAO_EXACT float least = lao_exp2(-100.0f / LAO_F(n > 0 ? n : 1));
+/* The least x whose power n is at least 2^-100. */
+LAO_FN float lao_power_least(lao_int n) {
+    return lao_exp2(-100.0f / LAO_F(n > 0 ? n : 1));
+}
+/* x^n, 0 <= n < 1024, by repeated squaring; x: 0, or lao_power_least to 1 */
+LAO_FN float lao_squarings(float x, lao_int n) {
     LAO_EXACT float r = 1.0f;
-    LAO_EXACT float b = x < least ? 0.0f : x;
+    LAO_EXACT float b = x;
     lao_int m = n;
     for (lao_int i = 0; i < 10; i = i + 1) {
         if ((m & 1) != 0) {
@@ -1386,6 +1389,11 @@ LAO_FN float lao_power(float x, lao_int n) {
         m = m >> 1;
     }
     return r;
+}
+/* x^n, 0 <= x <= 1, 0 <= n < 1024; results below 2^-100 are 0, because denormal numbers on the way
+   to them cost a CPU more than all the rest */
+LAO_FN float lao_power(float x, lao_int n) {
+    return lao_squarings(x < lao_power_least(n) ? 0.0f : x, n);
 }
 
 /* ---- noise: counter-based, so that a pixel's value depends on nothing but its coordinates */
@@ -1412,10 +1420,12 @@ LAO_FN lao_v3 lao_pixel_noise(lao_uint x, lao_uint y) {
     lao_uint h = lao_hash(x + lao_hash(y));
     return lao_sphere_point(lao_unit_float(h), lao_unit_float(lao_hash(h ^ 2654435769u)));
 }
-/* Sample direction i of `count` on level `level`: a spherical Fibonacci set, turned per level. */
+/* Sample direction i of `count` on level `level`: a spherical Fibonacci set, turned per level, from
+   both ends in turn, so that neighbours share the products of their z. */
 LAO_FN lao_v3 lao_sample_direction(lao_uint level, lao_uint i, lao_uint count) {
-    LAO_EXACT float u = (LAO_F(i) + 0.5f) / LAO_F(count);
-    LAO_EXACT float v = lao_unit_float(i * 2654435769u + level * 1640531527u);
+    lao_uint j = (i & 1u) == 0u ? i >> 1u : count - 1u - (i >> 1u);
+    LAO_EXACT float u = (LAO_F(j) + 0.5f) / LAO_F(count);
+    LAO_EXACT float v = lao_unit_float(j * 2654435769u + level * 1640531527u);
     return lao_sphere_point(u, v);
 }
 /* Samples of a level: max(1, round(samples / (level + 1))) */
@@ -1960,11 +1970,14 @@ LAO_FN float lao_depth_reach(float density, lao_uint level, lao_uint levels) {
 }
 /* Eq. 5: 1 below delta 0, 0 beyond reach; `beyond` delta 0. slope: lao_depth_weight_slope. It is
    1 - h(t) with t stretched by the cube root of 2, which takes h's factors away. */
-LAO_FN float lao_depth_weight(float beyond, float slope) {
+LAO_FN float lao_depth_weight_beyond(float beyond, float slope) { /* of beyond >= 0 */
     LAO_EXACT float steep = slope * 1.25992095f;
-    LAO_EXACT float t = lao_min(lao_max(beyond * steep, 0.0f), 1.25992095f);
+    LAO_EXACT float t = lao_min(beyond * steep, 1.25992095f);
     LAO_EXACT float r = 1.0f + t * t * (t - 1.88988161f);
     return r;
+}
+LAO_FN float lao_depth_weight(float beyond, float slope) {
+    return lao_depth_weight_beyond(lao_max(beyond, 0.0f), slope);
 }
 /* 1 / (reach - delta 0); steep enough for a step where reach does not exceed delta 0. */
 LAO_FN float lao_depth_weight_slope(float reach, float threshold) {
@@ -1972,12 +1985,22 @@ LAO_FN float lao_depth_weight_slope(float reach, float threshold) {
     LAO_EXACT float slope = 1.0f / width;
     return slope;
 }
-/* Eq. 8 and 9 with the receiver's cosine: n_omega = n.omega >= 0, r_omega = r.omega (below 0 counts
- * as 0), diffuse = I k_d n.l */
-LAO_FN float lao_light_weight(float diffuse, float n_omega, float specular, float r_omega,
-                              lao_int exponent) {
-    LAO_EXACT float l = diffuse * n_omega + specular * lao_power(r_omega, exponent);
-    LAO_EXACT float g = 1.0f - lao_min(l, 1.0f);
+/* What the normal and the reflected light of a pixel are scaled by, so that their cosines to omega
+   carry the light's parts: I k_d n.l (not 0, whose products would have no sign), and the root of
+   I k_s that the exponent takes back. */
+LAO_FN float lao_light_diffuse(float intensity, float diffuse, float nl) {
+    LAO_EXACT float scale = lao_max(intensity * diffuse * nl, 1.0e-20f);
+    return scale;
+}
+LAO_FN float lao_light_specular(float intensity, float specular, lao_int exponent) {
+    LAO_EXACT float scale = intensity * specular;
+    return scale > 0.0f ? lao_exp2(lao_log2(scale) / LAO_F(exponent)) : 0.0f;
+}
+/* Eq. 8 and 9 with the receiver's cosine: I k_d (n.l)(n.omega), and the root of the specular part
+   (below 0 counts as 0) */
+LAO_FN float lao_light_weight(float diffuse, float root, lao_int exponent) {
+    float shine = lao_squarings(lao_max(root, lao_power_least(exponent)), exponent);
+    LAO_EXACT float g = 1.0f - lao_min(diffuse + shine, 1.0f);
     return g;
 }
 /* The light form of the author's program: 1.5 - max(omega.n, 0)(spec + diff), the reflection at the
@@ -2069,8 +2092,8 @@ LAO_FN lao_tap lao_tap_make(lao_sampler s, lao_v3 direction, lao_v2 inverse) {
     LAO_EXACT float y = lao_floor(s.centre.y + lao_turned(lao_v3_dot(direction, s.y), side));
     LAO_EXACT float u = (x + 0.5f) * inverse.x;
     LAO_EXACT float v = (y + 0.5f) * inverse.y;
-    /* both in [0, 1): no bit is set in either floor */
-    bool inside = (lao_float_bits(lao_floor(u)) | lao_float_bits(lao_floor(v))) == 0u;
+    /* both in [0, 1): the bits of less than 1, and no sign */
+    bool inside = lao_float_bits(u) < 1065353216u && lao_float_bits(v) < 1065353216u;
     tap.counts = inside && (x != s.own.x || y != s.own.y);
     tap.side = side;
     tap.n_omega = lao_abs(c);
@@ -2177,8 +2200,9 @@ extern "C" {
 #define LAO__READ(image) {image, LAO_LEVEL_SAME, 0, LAO_PHASE_THIS, LAO_LOAD_DISCARD}
 #define LAO__READ_FINER(image) {image, LAO_LEVEL_FINER, 0, LAO_PHASE_THIS, LAO_LOAD_DISCARD}
 #define LAO__READ_LEVEL(image, level) {image, LAO_LEVEL_INDEX, level, LAO_PHASE_THIS, LAO_LOAD_DISCARD}
-#define LAO__READ_ALL(image) LAO__READ_LEVEL(image, 0), LAO__READ_LEVEL(image, 1), LAO__READ_LEVEL(image, 2), LAO__READ_LEVEL(image, 3), \
-                             LAO__READ_LEVEL(image, 4), LAO__READ_LEVEL(image, 5), LAO__READ_LEVEL(image, 6), LAO__READ_LEVEL(image, 7)
+#define LAO__READ_COARSE(image) LAO__READ_LEVEL(image, 1), LAO__READ_LEVEL(image, 2), LAO__READ_LEVEL(image, 3), LAO__READ_LEVEL(image, 4), \
+                                LAO__READ_LEVEL(image, 5), LAO__READ_LEVEL(image, 6), LAO__READ_LEVEL(image, 7)
+#define LAO__READ_ALL(image) LAO__READ_LEVEL(image, 0), LAO__READ_COARSE(image)
 #define LAO__CLEAR(image) {image, LAO_LEVEL_SAME, 0, LAO_PHASE_THIS, LAO_LOAD_CLEAR}
 #define LAO__KEEP(image) {image, LAO_LEVEL_SAME, 0, LAO_PHASE_THIS, LAO_LOAD_KEEP}
 #define LAO__WRITE(image) {image, LAO_LEVEL_SAME, 0, LAO_PHASE_THIS, LAO_LOAD_DISCARD}
@@ -2188,6 +2212,7 @@ extern "C" {
 #define LAO__UNKNOWN 0.501960784f /* no tangent: 128 of 255, about 0 */
 #define LAO__ALWAYS {{NULL, 0, 0}}
 #define LAO__ANY {NULL, 0, 0}
+#define LAO__LINES {"#points", '>', 0} /* sets of objects alone have nothing to draw or to shade here */
 
 static const lao_image_row lao__images[] = {
     /* name          format              size           w  h  levels    flags             encoding               clear         when                                    channels */
@@ -2213,48 +2238,48 @@ static const lao_pass_row lao__passes[] = {
      {LAO__WRITE("zbuffer")}, {LAO__READ("host_depth")}},
     /* G-buffer: colour and mask, tangent and zoom, linear depth (METHODS 1.1). One row of four draws a set: what the fragments need to know of the line's
        outline or of a fade costs where there is none, and who writes depth is tested late */
-    {"lines", LAO_PASS_DRAW_LINES_FIRST, "lines", 0, LAO_STAGE_DRAW, LAO_SCOPE_PER_SET, LAO_REPEAT_NONE, NULL, LAO_BLEND_NONE, LAO_DEPTH_NEARER, LAO_CULL_NONE, {{"halo", '=', LAO_HALO_NONE}, {"trail", '!', LAO_TRAIL_OPACITY}},
+    {"lines", LAO_PASS_DRAW_LINES_FIRST, "lines", 0, LAO_STAGE_DRAW, LAO_SCOPE_PER_SET, LAO_REPEAT_NONE, NULL, LAO_BLEND_NONE, LAO_DEPTH_NEARER, LAO_CULL_NONE, {LAO__LINES, {"halo", '=', LAO_HALO_NONE}, {"trail", '!', LAO_TRAIL_OPACITY}},
      {LAO__CLEAR("color"), LAO__CLEAR("tangent"), LAO__CLEAR("depth"), LAO__KEEP("zbuffer")}, {LAO__READ("#points"), LAO__READ("#colors"), LAO__READ("#order")}},
-    {"lines_fading", LAO_PASS_DRAW_LINES_FIRST, "lines_rim", 0, LAO_STAGE_DRAW, LAO_SCOPE_PER_SET, LAO_REPEAT_NONE, NULL, LAO_BLEND_NONE, LAO_DEPTH_NEARER, LAO_CULL_NONE, {{"halo", '=', LAO_HALO_NONE}, {"trail", '=', LAO_TRAIL_OPACITY}},
+    {"lines_fading", LAO_PASS_DRAW_LINES_FIRST, "lines_rim", 0, LAO_STAGE_DRAW, LAO_SCOPE_PER_SET, LAO_REPEAT_NONE, NULL, LAO_BLEND_NONE, LAO_DEPTH_NEARER, LAO_CULL_NONE, {LAO__LINES, {"halo", '=', LAO_HALO_NONE}, {"trail", '=', LAO_TRAIL_OPACITY}},
      {LAO__CLEAR("color"), LAO__CLEAR("tangent"), LAO__CLEAR("depth"), LAO__KEEP("zbuffer")}, {LAO__READ("#points"), LAO__READ("#colors"), LAO__READ("#order")}},
-    {"lines_rim", LAO_PASS_DRAW_LINES_FIRST, "lines_rim", 0, LAO_STAGE_DRAW, LAO_SCOPE_PER_SET, LAO_REPEAT_NONE, NULL, LAO_BLEND_NONE, LAO_DEPTH_NEARER, LAO_CULL_NONE, {{"halo", '=', LAO_HALO_UNIFORM}},
+    {"lines_rim", LAO_PASS_DRAW_LINES_FIRST, "lines_rim", 0, LAO_STAGE_DRAW, LAO_SCOPE_PER_SET, LAO_REPEAT_NONE, NULL, LAO_BLEND_NONE, LAO_DEPTH_NEARER, LAO_CULL_NONE, {LAO__LINES, {"halo", '=', LAO_HALO_UNIFORM}},
      {LAO__CLEAR("color"), LAO__CLEAR("tangent"), LAO__CLEAR("depth"), LAO__KEEP("zbuffer")}, {LAO__READ("#points"), LAO__READ("#colors"), LAO__READ("#order")}},
-    {"lines_halo", LAO_PASS_DRAW_LINES_FIRST, "lines_halo", 0, LAO_STAGE_DRAW, LAO_SCOPE_PER_SET, LAO_REPEAT_NONE, NULL, LAO_BLEND_NONE, LAO_DEPTH_NEARER, LAO_CULL_NONE, {{"halo", '=', LAO_HALO_DEPTH}},
+    {"lines_halo", LAO_PASS_DRAW_LINES_FIRST, "lines_halo", 0, LAO_STAGE_DRAW, LAO_SCOPE_PER_SET, LAO_REPEAT_NONE, NULL, LAO_BLEND_NONE, LAO_DEPTH_NEARER, LAO_CULL_NONE, {LAO__LINES, {"halo", '=', LAO_HALO_DEPTH}},
      {LAO__CLEAR("color"), LAO__CLEAR("tangent"), LAO__CLEAR("depth"), LAO__KEEP("zbuffer")}, {LAO__READ("#points"), LAO__READ("#colors"), LAO__READ("#order")}},
     /* of many lines a part is drawn first; of the rest only what does not lie wholly behind the farthest depth around it */
-    {"far_tiles", LAO_PASS_FULLSCREEN, "far", 0, LAO_STAGE_DRAW, LAO_SCOPE_PER_SET, LAO_REPEAT_NONE, NULL, LAO_BLEND_NONE, LAO_DEPTH_NONE, LAO_CULL_NONE, {{"cull_hidden", '=', 1}, {"@color", '=', 0}},
+    {"far_tiles", LAO_PASS_FULLSCREEN, "far", 0, LAO_STAGE_DRAW, LAO_SCOPE_PER_SET, LAO_REPEAT_NONE, NULL, LAO_BLEND_NONE, LAO_DEPTH_NONE, LAO_CULL_NONE, {LAO__LINES, {"cull_hidden", '=', 1}, {"@color", '=', 0}},
      {LAO__WRITE_LEVEL("far_tiles", 3)}, {LAO__READ("zbuffer")}},
-    {"far", LAO_PASS_FULLSCREEN, "far", 1, LAO_STAGE_DRAW, LAO_SCOPE_PER_SET, LAO_REPEAT_NONE, NULL, LAO_BLEND_NONE, LAO_DEPTH_NONE, LAO_CULL_NONE, {{"cull_hidden", '=', 1}, {"@color", '=', 0}},
+    {"far", LAO_PASS_FULLSCREEN, "far", 1, LAO_STAGE_DRAW, LAO_SCOPE_PER_SET, LAO_REPEAT_NONE, NULL, LAO_BLEND_NONE, LAO_DEPTH_NONE, LAO_CULL_NONE, {LAO__LINES, {"cull_hidden", '=', 1}, {"@color", '=', 0}},
      {LAO__WRITE_LEVEL("far", 3)}, {LAO__READ_LEVEL("far_tiles", 3)}},
-    {"lines_rest", LAO_PASS_DRAW_LINES_REST, "lines", 1, LAO_STAGE_DRAW, LAO_SCOPE_PER_SET, LAO_REPEAT_NONE, NULL, LAO_BLEND_NONE, LAO_DEPTH_NEARER, LAO_CULL_NONE, {{"cull_hidden", '=', 1}, {"halo", '=', LAO_HALO_NONE}},
+    {"lines_rest", LAO_PASS_DRAW_LINES_REST, "lines", 1, LAO_STAGE_DRAW, LAO_SCOPE_PER_SET, LAO_REPEAT_NONE, NULL, LAO_BLEND_NONE, LAO_DEPTH_NEARER, LAO_CULL_NONE, {LAO__LINES, {"cull_hidden", '=', 1}, {"halo", '=', LAO_HALO_NONE}},
      {LAO__KEEP("color"), LAO__KEEP("tangent"), LAO__KEEP("depth"), LAO__KEEP("zbuffer")}, {LAO__READ("#points"), LAO__READ("#colors"), LAO__READ("#order"), LAO__READ_LEVEL("far", 3)}},
-    {"lines_rim_rest", LAO_PASS_DRAW_LINES_REST, "lines_rim", 1, LAO_STAGE_DRAW, LAO_SCOPE_PER_SET, LAO_REPEAT_NONE, NULL, LAO_BLEND_NONE, LAO_DEPTH_NEARER, LAO_CULL_NONE, {{"cull_hidden", '=', 1}, {"halo", '=', LAO_HALO_UNIFORM}},
+    {"lines_rim_rest", LAO_PASS_DRAW_LINES_REST, "lines_rim", 1, LAO_STAGE_DRAW, LAO_SCOPE_PER_SET, LAO_REPEAT_NONE, NULL, LAO_BLEND_NONE, LAO_DEPTH_NEARER, LAO_CULL_NONE, {LAO__LINES, {"cull_hidden", '=', 1}, {"halo", '=', LAO_HALO_UNIFORM}},
      {LAO__KEEP("color"), LAO__KEEP("tangent"), LAO__KEEP("depth"), LAO__KEEP("zbuffer")}, {LAO__READ("#points"), LAO__READ("#colors"), LAO__READ("#order"), LAO__READ_LEVEL("far", 3)}},
-    {"lines_halo_rest", LAO_PASS_DRAW_LINES_REST, "lines_halo", 1, LAO_STAGE_DRAW, LAO_SCOPE_PER_SET, LAO_REPEAT_NONE, NULL, LAO_BLEND_NONE, LAO_DEPTH_NEARER, LAO_CULL_NONE, {{"cull_hidden", '=', 1}, {"halo", '=', LAO_HALO_DEPTH}},
+    {"lines_halo_rest", LAO_PASS_DRAW_LINES_REST, "lines_halo", 1, LAO_STAGE_DRAW, LAO_SCOPE_PER_SET, LAO_REPEAT_NONE, NULL, LAO_BLEND_NONE, LAO_DEPTH_NEARER, LAO_CULL_NONE, {LAO__LINES, {"cull_hidden", '=', 1}, {"halo", '=', LAO_HALO_DEPTH}},
      {LAO__KEEP("color"), LAO__KEEP("tangent"), LAO__KEEP("depth"), LAO__KEEP("zbuffer")}, {LAO__READ("#points"), LAO__READ("#colors"), LAO__READ("#order"), LAO__READ_LEVEL("far", 3)}},
     /* the host's G-buffer instead of our lines: its mask as depth, for the passes that skip background by it */
     {"cover", LAO_PASS_FULLSCREEN, "cover", 0, LAO_STAGE_DRAW, LAO_SCOPE_PER_SET, LAO_REPEAT_NONE, NULL, LAO_BLEND_NONE, LAO_DEPTH_ALWAYS, LAO_CULL_NONE, {{"@color", '>', 0}},
      {LAO__CLEAR("zbuffer")}, {LAO__READ("color")}},
     /* level 0 of what a sample reads */
-    {"level_zero", LAO_PASS_FULLSCREEN, "level_zero", 0, LAO_STAGE_SHADE, LAO_SCOPE_PER_SET, LAO_REPEAT_NONE, NULL, LAO_BLEND_NONE, LAO_DEPTH_COVERED, LAO_CULL_NONE, {{"occlusion", '=', 1}},
+    {"level_zero", LAO_PASS_FULLSCREEN, "level_zero", 0, LAO_STAGE_SHADE, LAO_SCOPE_PER_SET, LAO_REPEAT_NONE, NULL, LAO_BLEND_NONE, LAO_DEPTH_COVERED, LAO_CULL_NONE, {LAO__LINES, {"occlusion", '=', 1}},
      {LAO__CLEAR("level"), LAO__CLEAR("level_tangent"), LAO__KEEP("zbuffer")},
      {LAO__READ("color"), LAO__READ("tangent"), LAO__READ("depth")}},
     /* coarser levels, and from level 1 on the sums that the next one is made of */
-    {"level_one", LAO_PASS_FULLSCREEN, "level_one", 0, LAO_STAGE_SHADE, LAO_SCOPE_PER_SET, LAO_REPEAT_NONE, NULL, LAO_BLEND_NONE, LAO_DEPTH_NONE, LAO_CULL_NONE, {{"occlusion", '=', 1}, {"levels", '>', 1}},
+    {"level_one", LAO_PASS_FULLSCREEN, "level_one", 0, LAO_STAGE_SHADE, LAO_SCOPE_PER_SET, LAO_REPEAT_NONE, NULL, LAO_BLEND_NONE, LAO_DEPTH_NONE, LAO_CULL_NONE, {LAO__LINES, {"occlusion", '=', 1}, {"levels", '>', 1}},
      {LAO__WRITE_LEVEL("tensor", 1), LAO__WRITE_LEVEL("level", 1), LAO__WRITE_LEVEL("level_tangent", 1)},
      {LAO__READ_LEVEL("level", 0), LAO__READ_LEVEL("level_tangent", 0)}},
-    {"level_up", LAO_PASS_FULLSCREEN, "level_up", 0, LAO_STAGE_SHADE, LAO_SCOPE_PER_SET, LAO_REPEAT_LEVELS_UP, NULL, LAO_BLEND_NONE, LAO_DEPTH_NONE, LAO_CULL_NONE, {{"occlusion", '=', 1}},
+    {"level_up", LAO_PASS_FULLSCREEN, "level_up", 0, LAO_STAGE_SHADE, LAO_SCOPE_PER_SET, LAO_REPEAT_LEVELS_UP, NULL, LAO_BLEND_NONE, LAO_DEPTH_NONE, LAO_CULL_NONE, {LAO__LINES, {"occlusion", '=', 1}},
      {LAO__WRITE_ABOVE("tensor", 1), LAO__WRITE("level"), LAO__WRITE("level_tangent")},
      {LAO__READ_FINER("tensor"), LAO__READ_FINER("level_tangent")}},
-    {"occlusion", LAO_PASS_FULLSCREEN, "occlusion", 0, LAO_STAGE_SHADE, LAO_SCOPE_PER_SET, LAO_REPEAT_NONE, NULL, LAO_BLEND_NONE, LAO_DEPTH_COVERED, LAO_CULL_NONE, {{"occlusion", '=', 1}},
+    {"occlusion", LAO_PASS_FULLSCREEN, "occlusion", 0, LAO_STAGE_SHADE, LAO_SCOPE_PER_SET, LAO_REPEAT_NONE, NULL, LAO_BLEND_NONE, LAO_DEPTH_COVERED, LAO_CULL_NONE, {LAO__LINES, {"occlusion", '=', 1}},
      {LAO__CLEAR("ao"), LAO__KEEP("zbuffer")},
-     {LAO__READ("tangent"), LAO__READ_ALL("level"), LAO__READ_ALL("level_tangent")}},
+     {LAO__READ("tangent"), LAO__READ_ALL("level"), LAO__READ_COARSE("level_tangent")}},
     /* for debugging only: shadows leak into what is not shadowed (Koehler 2017, 4.4) */
-    {"smooth_x", LAO_PASS_FULLSCREEN, "smooth", 0, LAO_STAGE_SHADE, LAO_SCOPE_PER_SET, LAO_REPEAT_COUNT, "smoothing", LAO_BLEND_NONE, LAO_DEPTH_NONE, LAO_CULL_NONE, {{"occlusion", '=', 1}},
+    {"smooth_x", LAO_PASS_FULLSCREEN, "smooth", 0, LAO_STAGE_SHADE, LAO_SCOPE_PER_SET, LAO_REPEAT_COUNT, "smoothing", LAO_BLEND_NONE, LAO_DEPTH_NONE, LAO_CULL_NONE, {LAO__LINES, {"occlusion", '=', 1}},
      {LAO__OTHER("ao")}, {LAO__READ("ao"), LAO__READ("color")}},
-    {"smooth_y", LAO_PASS_FULLSCREEN, "smooth", 1, LAO_STAGE_SHADE, LAO_SCOPE_PER_SET, LAO_REPEAT_COUNT, "smoothing", LAO_BLEND_NONE, LAO_DEPTH_NONE, LAO_CULL_NONE, {{"occlusion", '=', 1}},
+    {"smooth_y", LAO_PASS_FULLSCREEN, "smooth", 1, LAO_STAGE_SHADE, LAO_SCOPE_PER_SET, LAO_REPEAT_COUNT, "smoothing", LAO_BLEND_NONE, LAO_DEPTH_NONE, LAO_CULL_NONE, {LAO__LINES, {"occlusion", '=', 1}},
      {LAO__OTHER("ao")}, {LAO__READ("ao"), LAO__READ("color")}},
-    {"shade", LAO_PASS_FULLSCREEN, "shade", 0, LAO_STAGE_SHADE, LAO_SCOPE_PER_SET, LAO_REPEAT_NONE, NULL, LAO_BLEND_NONE, LAO_DEPTH_COVERED, LAO_CULL_NONE, LAO__ALWAYS,
+    {"shade", LAO_PASS_FULLSCREEN, "shade", 0, LAO_STAGE_SHADE, LAO_SCOPE_PER_SET, LAO_REPEAT_NONE, NULL, LAO_BLEND_NONE, LAO_DEPTH_COVERED, LAO_CULL_NONE, {LAO__LINES},
      {LAO__KEEP("shaded"), LAO__KEEP("zbuffer")}, {LAO__READ("color"), LAO__READ("tangent"), LAO__READ("ao")}},
     /* box filter over the samples of a pixel, and the background */
     {"resolve", LAO_PASS_FULLSCREEN, "resolve", 0, LAO_STAGE_PRESENT, LAO_SCOPE_FRAME, LAO_REPEAT_NONE, NULL, LAO_BLEND_NONE, LAO_DEPTH_NONE, LAO_CULL_NONE, LAO__ALWAYS,
@@ -2950,8 +2975,20 @@ static int lao__row_is_used(const lao_graph *graph, uint32_t index) {
     return 0;
 }
 
+static const lao_shader *lao__shader_find(const lao_shader *shaders, uint32_t count,
+                                          const char *name) {
+    uint32_t i;
+    for (i = 0; i < count; i++) {
+        if (strcmp(shaders[i].name, name) == 0) {
+            return &shaders[i];
+        }
+    }
+    return NULL;
+}
+
 int lao_graph_check(const lao_graph *graph, const lao_shader *shaders, uint32_t shader_count,
                     char *text, size_t text_size) {
+    const lao_shader *shader;
     uint32_t i, k, m, used;
     if (lao__check_names(graph, text, text_size) != 0) {
         return -1;
@@ -2997,15 +3034,19 @@ int lao_graph_check(const lao_graph *graph, const lao_shader *shaders, uint32_t 
             return lao__fault(text, text_size, "nothing uses what pass '%s' writes%s", row->name,
                               "");
         }
-        for (k = 0; shaders && k < shader_count && strcmp(shaders[k].name, row->shader) != 0; k++) {
+        shader = lao__shader_find(graph->modules[m]->shaders, graph->modules[m]->shader_count,
+                                  row->shader);
+        if (!shader) {
+            shader = lao__shader_find(shaders, shaders ? shader_count : 0, row->shader);
         }
-        used = shaders && k < shader_count;
-        for (k = 0; k < graph->modules[m]->shader_count; k++) {
-            used |= strcmp(graph->modules[m]->shaders[k].name, row->shader) == 0;
-        }
-        if (shaders && !used) {
+        if (shaders && !shader) {
             return lao__fault(text, text_size, "pass '%s' has no shader '%s'", row->name,
                               row->shader);
+        }
+        if (shader && shader->texture_count > LAO_MAX_READS) {
+            return lao__fault(text, text_size,
+                              "shader '%s' of pass '%s' has more textures than a pass can read",
+                              row->shader, row->name);
         }
     }
     for (i = 0; i < graph->image_count; i++) {
@@ -3104,6 +3145,17 @@ static uint32_t lao__import_find(const lao_plan_desc *desc, const char *image) {
     return LAO_NO_INDEX;
 }
 
+/* Buffers of the lines, the first of every context. */
+#define LAO__LINE_BUFFERS ((1u << lao__lines_module.buffer_count) - 1)
+
+/* Which buffers a set has, as bits. */
+static uint32_t lao__set_buffers(const lao__planner *p, uint32_t set) {
+    if (p->desc->buffers) {
+        return p->desc->buffers[set];
+    }
+    return p->graph->modules[0] == &lao__lines_module ? LAO__LINE_BUFFERS : 0;
+}
+
 static int lao__holds(const lao__planner *p, uint32_t module, uint32_t set, const lao_when *when) {
     float value;
     if (!when->name) {
@@ -3117,7 +3169,7 @@ static int lao__holds(const lao__planner *p, uint32_t module, uint32_t set, cons
             value = 2.0f;
         }
     } else if (when->name[0] == LAO__BUFFER_MARK) {
-        uint32_t present = p->desc->buffers ? p->desc->buffers[set] : 0;
+        uint32_t present = lao__set_buffers(p, set);
         value = (float)((present >> lao__buffer_find(p->graph, when->name)) & 1u);
     } else {
         value = lao__value(p, module, set, when->name);
@@ -3275,10 +3327,11 @@ static int lao__is_written(const lao_plan *plan, uint32_t instance, uint32_t end
     return 0;
 }
 
-/* Whether the row draws all sets into one G-buffer. */
-static int lao__draws_together(const lao__planner *p, const lao_pass_row *row) {
-    return p->desc->shared_occlusion && row->stage == LAO_STAGE_DRAW &&
-           row->scope == LAO_SCOPE_PER_SET;
+/* Whether the row draws the lines of all sets into one G-buffer. */
+static int lao__draws_together(const lao__planner *p, uint32_t pass) {
+    const lao_pass_row *row = p->graph->passes[pass];
+    return p->desc->shared_occlusion && p->graph->pass_modules[pass] == 0 &&
+           row->stage == LAO_STAGE_DRAW && row->scope == LAO_SCOPE_PER_SET;
 }
 
 static void lao__step_write(lao__planner *p, lao_plan_step *step, const lao_reference *reference) {
@@ -3297,7 +3350,7 @@ static void lao__step_write(lao__planner *p, lao_plan_step *step, const lao_refe
     write.clear = reference->load == LAO_LOAD_DISCARD ? 2 : reference->load == LAO_LOAD_CLEAR;
     /* sets that share one G-buffer draw into what the first of them cleared */
     if ((reference->load == LAO_LOAD_KEEP ||
-         (reference->load == LAO_LOAD_CLEAR && lao__draws_together(p, step->row))) &&
+         (reference->load == LAO_LOAD_CLEAR && lao__draws_together(p, step->pass))) &&
         !(row->flags & LAO_IMAGE_IMPORT)) {
         write.clear =
             instance != LAO_NO_INDEX && lao__is_written(p->plan, instance, p->plan->step_count) ? 0
@@ -3323,7 +3376,7 @@ static int32_t lao__step_constant(const lao__planner *p, const lao_plan_step *st
     }
     for (i = 0; strncmp(name, "has_", 4) == 0 && i < p->graph->buffer_count; i++) {
         if (strcmp(p->graph->buffers[i]->name, name + 4) == 0) {
-            return p->desc->buffers ? (int32_t)((p->desc->buffers[step->set] >> i) & 1u) : 0;
+            return (int32_t)((lao__set_buffers(p, step->set) >> i) & 1u);
         }
     }
     return (int32_t)lao__value(p, step->module, step->set, name);
@@ -3447,24 +3500,37 @@ static void lao__plan_pass(lao__planner *p, uint32_t pass, uint32_t set) {
     }
 }
 
-/* Consecutive rows of each set. With shared occlusion a row at a time draws all sets, and what
-   comes after drawing runs once, by the first set's settings. */
+/* Consecutive rows of each set. With shared occlusion a row of the lines at a time draws all sets,
+   and what comes after drawing runs once, by the first set's settings; further modules follow. */
 static void lao__plan_sets(lao__planner *p, uint32_t first, uint32_t end) {
-    uint32_t i, set;
-    if (!p->desc->shared_occlusion || p->graph->passes[first]->stage == LAO_STAGE_COMPOSE) {
-        for (set = 0; set < p->desc->set_count; set++) {
-            for (i = first; i < end; i++) {
-                lao__plan_pass(p, i, set);
-            }
-        }
-        return;
-    }
-    for (i = first; i < end; i++) {
-        uint32_t count = lao__draws_together(p, p->graph->passes[i]) ? p->desc->set_count : 1;
+    int shared = p->desc->shared_occlusion && p->graph->passes[first]->stage != LAO_STAGE_COMPOSE;
+    uint32_t i, set, count;
+    for (i = first; shared && i < end; i++) {
+        count = p->graph->pass_modules[i] > 0 ? 0
+                : lao__draws_together(p, i)   ? p->desc->set_count
+                                              : 1;
         for (set = 0; set < count; set++) {
             lao__plan_pass(p, i, set);
         }
     }
+    for (set = 0; set < p->desc->set_count; set++) {
+        for (i = first; i < end; i++) {
+            if (!shared || p->graph->pass_modules[i] > 0) {
+                lao__plan_pass(p, i, set);
+            }
+        }
+    }
+}
+
+/* The set whose settings a row of the whole frame follows. */
+static uint32_t lao__frame_set_of(const lao__planner *p, uint32_t pass) {
+    uint32_t set;
+    for (set = 0; set < p->desc->set_count; set++) {
+        if (lao__row_runs(p, pass, set)) {
+            return set;
+        }
+    }
+    return 0;
 }
 
 /* Gives every instance memory; those whose lives do not meet share it. */
@@ -3616,7 +3682,7 @@ lao_result lao_plan_make(const lao_graph *graph, const lao_plan_desc *desc,
     for (pass = 0; pass < graph->pass_count && !p.failed; pass = end) {
         end = pass + 1;
         if (graph->passes[pass]->scope == LAO_SCOPE_FRAME) {
-            lao__plan_pass(&p, pass, 0);
+            lao__plan_pass(&p, pass, lao__frame_set_of(&p, pass));
             continue;
         }
         /* composing begins when all sets are shaded */
@@ -5028,7 +5094,8 @@ static lao_result lao__frame_set(lao_context *context, lao__view *view, const la
         draw->chunk_count = lines->chunk_count;
     }
     draw->object = object ? &object->chunk : NULL;
-    view->buffers[index] = 0;
+    /* the first set, and one that draws nothing, clear what others draw into */
+    view->buffers[index] = index == 0 || !object ? LAO__LINE_BUFFERS : 0;
     for (i = 0; i < LAO_MAX_BUFFERS; i++) {
         if ((draw->chunks && draw->chunks[0].buffers[i]) ||
             (draw->object && draw->object->buffers[i])) {

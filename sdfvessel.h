@@ -294,6 +294,22 @@ typedef struct sdv_svg_desc {
 SDV_API int sdv_layout_write_svg(const sdv_reduced *reduced, const sdv_layout *layout,
                                  const sdv_svg_desc *desc, const sdv_writer *writer);
 
+typedef struct sdv_drawing_desc {
+    float width, height; /* mm; 0: 200 x 100, radial 150 x 150 */
+    uint32_t radial;     /* non-zero: angle h, radius 1 - s */
+    float thickness;     /* mm, full, of the thinnest edge; 0: what suits the number of edges */
+} sdv_drawing_desc;
+/* The layout as a tree of its own, to be drawn like any tree into a view of its own: an
+   orthographic camera above the plane z = 0 sees it between (0, 0) and (width, height), the root on
+   top. Its node k is node k of the tree, on the edge of its reduced node by its way along the
+   vessel; from tree->node_count on come the extra nodes (sdv_reduced.ids), so that colours of nodes
+   serve both. Edges are the thicker the wider their vessels, by the root of the radius, up to four
+   times. Loops are cut. `desc` NULL: defaults. Free with sdv_tree_free. Fails with NULL_ARGUMENT,
+   MEMORY. */
+SDV_API lao_result sdv_layout_tree(const sdv_host *host, const sdv_tree *tree,
+                                   const sdv_reduced *reduced, const sdv_layout *layout,
+                                   const sdv_drawing_desc *desc, sdv_tree *drawing);
+
 /* ------------------------------------------------------------------------------------------------
  * the distance field on a grid */
 
@@ -313,7 +329,7 @@ typedef struct sdv_grid_desc {
    list is not empty; else that to the list of the nearest cell that has one, d <= x <= d + 1.74
    cells y  that nearest cell (itself where occupied; ties: the lowest index) z  occupied: place of
    its list in `ids`; else how far a ray may go from any point of the cell, mm w  length of the list
-   Memory: 20 bytes a cell, 4 an entry of the lists, 40 a cone. */
+   Memory: 20.2 bytes a cell, 4 an entry of the lists, 40 a cone. */
 typedef struct sdv_grid {
     lao_v3 origin; /* lower corner, mm */
     float cell;    /* mm */
@@ -324,6 +340,8 @@ typedef struct sdv_grid {
     lao_v4 *cones;        /* 2 per cone: centre and radius of both ends (parent, child) */
     uint32_t *cone_nodes; /* 2 per cone: the nodes */
     uint32_t *layer;      /* private: per cell x + 65536 y of the nearest occupied one at its z */
+    uint32_t *occupied;   /* private: a bit per cell that lists something, words along x */
+    uint32_t id_room;     /* private: how many `ids` there is memory for */
     uint32_t rebuilt;     /* sdv_grid_update: 1 when it had to build everything anew */
     lao_allocator allocator; /* private */
 } sdv_grid;
@@ -414,10 +432,11 @@ SDV_API void sdv_trace_shapes(const sdv_grid *grid, const sdv_shapes *shapes, co
    seen from p. `bias` (mm) is the start, off the surface. */
 SDV_API float sdv_shadow(const sdv_grid *grid, const sdv_shapes *shapes, lao_v3 p, lao_v3 light,
                          float hardness, float bias);
-/* Openness of p along its normal, 0 .. 1, from the field at 5 places up to `reach` mm away;
-   `inside` non-zero: of a wall seen from within, the room inside counts. */
-SDV_API float sdv_openness(const sdv_grid *grid, lao_v3 p, lao_v3 normal, float reach,
-                           uint32_t inside);
+/* Openness of p along its normal, 0 .. 1, from the field of the tree, combined with shapes (NULL:
+   none), at 5 places up to `reach` mm away; `inside` non-zero: of a wall seen from within, the room
+   inside counts. */
+SDV_API float sdv_openness(const sdv_grid *grid, const sdv_shapes *shapes, lao_v3 p, lao_v3 normal,
+                           float reach, uint32_t inside);
 
 /* Normal for shading at a place of the surface of `cone`: where segments meet, their normals go
    over into each other within `smoothness` of the radius, so that a chain of short segments has no
@@ -471,6 +490,24 @@ typedef struct sdv_pull_push_desc {
 SDV_API lao_result sdv_pull_push(const sdv_host *host, const sdv_pull_push_desc *desc,
                                  uint32_t *empty);
 
+/* X as SDV_SETTINGS, below: of the same on the device. */
+#define SDV_PULL_PUSH_SETTINGS(X)                                                                  \
+    X(pull, ENUM, 0, 1, 0, 1, "", "mean|sum", "weight of a child: 1/4, 1")                         \
+    X(push, ENUM, 0, 1, 0, 1, "", "equal|spline", "the 4 nearest parents: 1/4; 9, 3, 3, 1 / 16")   \
+    X(exponent, INT, 1, 1023, 1, 1, "", "", "k: how little a pixel takes over from its parents")
+typedef struct sdv_pull_push_settings {
+    uint64_t set;
+    float pull, push, exponent;
+} sdv_pull_push_settings;
+
+/* A module (lao_desc.modules) that fills a host's own image in lao_render, to the same bits as
+   sdv_pull_push. Each frame imports "pull_push_image" (RGBA32F; three channels and the weight; as
+   large as the view, row 0 at the bottom) and (Optional) "pull_push_result", an image of the host's
+   that is written (LAO_HOST_WRITABLE); lao_read knows it as "pull_push_filled" too. Settings: of
+   the frame's first set, which need hold nothing else. More channels: more frames. Static. Thread:
+   any. */
+SDV_API const lao_module *sdv_pull_push_module(void);
+
 /* ------------------------------------------------------------------------------------------------
  * drawing: a module for lao_desc.modules, whose object is a grid */
 
@@ -518,6 +555,8 @@ SDV_API lao_result sdv_pull_push(const sdv_host *host, const sdv_pull_push_desc 
       "background)")                                                                               \
     X(void_exponent, INT, 1, 1000, 25, 1, "", "",                                                  \
       "how little the void's depth takes over from afar (k of L19)")                               \
+    X(void_reach, FLOAT, 0, 1000, 6, 0, "%", "",                                                   \
+      "how far from a vessel the void's ink ends, of the scene's diameter; 0: nowhere")            \
     X(isolines, INT, 0, 1000, 30, 0, "", "", "lines of depth of the chromadepth; 0: none")         \
     X(ink_step, FLOAT, 0.001f, 1, 0.1f, 0, "", "",                                                 \
       "how much of what a new solution changes of a place's ink shows in a frame; 1: all at once") \
@@ -569,6 +608,7 @@ typedef struct sdv_object {
     lao_object_buffer buffers[8];
     lao_v4 box[2];
     lao_v4 shapes[1 + 4 * SDV_MOST_SHAPES];
+    lao_v4 *nearest;     /* private: the shapes, then the cones in a hierarchy, where colours ask */
     uint32_t on_device;  /* sdv_object_make_tree: 1 when the device builds the field */
     sdv_grid grid;       /* of sdv_object_make_tree; on_device: its box and cones, no cells */
     uint32_t image_size; /* private, like what follows */
@@ -598,8 +638,9 @@ SDV_API lao_result sdv_object_make(const sdv_host *host, const sdv_grid *grid,
                                    const uint8_t *colors, sdv_object *object);
 /* Combines it with shapes, before it is created or in an update. `colors`: (Optional) red, green,
    blue of the surface of each, display values; red below 0: the colour of the vessel that is
-   nearest to the place (L19 Fig. 11; as exact as the grid is far from vessels). `shapes->fields` is
-   referred to. Fails with NULL_ARGUMENT, SHAPES. */
+   nearest to the place (L19 Fig. 11), exactly, however far it is: for that cones are put into a
+   hierarchy of balls, in O(n log n). `shapes->fields` is referred to. Fails with NULL_ARGUMENT,
+   SHAPES, MEMORY. */
 SDV_API lao_result sdv_object_shapes(const sdv_host *host, const sdv_shapes *shapes,
                                      const float *colors, sdv_object *object);
 /* The same for a tree whose nodes may change every frame: only its cones are uploaded, and rows of
@@ -621,11 +662,14 @@ SDV_API lao_result sdv_object_move(const sdv_host *host, const sdv_tree *tree,
    Fails with NULL_ARGUMENT, MESH, MEMORY. */
 SDV_API lao_result sdv_object_mesh(const sdv_host *host, const sdv_mesh_desc *desc,
                                    sdv_object *object);
-/* Describes a surface that the host has drawn itself. Each frame names three images of its own
-   (lao_frame.imports; as large as the view, `supersampling` 1): "vessel_position" (RGBA32F; world,
-   mm; w 0 where there is a surface, -1 elsewhere), "vessel_normal" (RGBA32F; world, unit, towards
-   the viewer) and "vessel_color" (RGBA8); with guide=own "vessel_direction" (RGBA32F; world; w: how
-   sure, 0 .. 1) too. bounds: lower and upper corner (6 floats), mm. Fails with NULL_ARGUMENT. */
+/* Describes a surface that the host has drawn itself. Each frame names images of its own
+   (lao_frame.imports; as large as the view times `supersampling`, row 0 at the bottom):
+   "vessel_position" (RGBA32F; world, mm; w 0 where there is a surface, -1 elsewhere), or in its
+   place "vessel_drawn_depth" (x: a depth buffer's value, 0 .. 1 by lao_frame.camera; nothing where
+   it is 0 or 1). (Optional) "vessel_normal" (RGBA32F; world, unit, towards the viewer; w: beside
+   the surface mm from the ray to it, for void_reach) and "vessel_color" (RGBA8): else normals come
+   from neighbouring places, and it is white. With guide=own "vessel_direction" (RGBA32F; world; w:
+   how sure, 0 .. 1). bounds: lower and upper corner (6 floats), mm. Fails with NULL_ARGUMENT. */
 SDV_API lao_result sdv_object_drawn(const sdv_host *host, const float *bounds, sdv_object *object);
 /* Gives it a texture of ink for the style `pattern`: a picture of size x size grey values (1 ..
    SDV_MOST_PATTERN; smaller: inked first), which lies in half a period of (u, v) and is mirrored
@@ -1053,7 +1097,8 @@ LAO_FN sdv_box sdv_box_grown(sdv_box box, float reach) {
     return r;
 }
 #define SDV_POLISH_ROUNDS 2
-/* Newton's step from a point close to the surface onto it: where the field's tangent is 0. */
+/* Newton's step from a point close to the surface onto it: where the field's tangent is 0. Of a ray
+   that grazes it may lead away; then the place before is kept. */
 LAO_FN float sdv_polish(float t, float distance, lao_v3 gradient, lao_v3 direction, float cell) {
     LAO_EXACT float slope = lao_v3_dot(gradient, direction);
     LAO_EXACT float steep = lao_max(lao_abs(slope), 0.02f);
@@ -1257,6 +1302,37 @@ LAO_FN sdv_solid sdv_solid_add(sdv_solid s, float distance, lao_int operation, l
     return r;
 }
 
+/* The nearest vessel to a place, however far: a complete binary tree of balls around cones, node i
+   over 2 i and 2 i + 1, gone through in that order from the root, 1, to 0. A leaf has up to four.
+ */
+#define SDV_LEAF_CONES 4
+/* Could a ball hold something as near as `least`? The margin is for rounding. */
+LAO_FN bool sdv_ball_reaches(lao_v3 p, lao_v4 ball, float least) {
+    lao_v3 q = lao_v3_sub(p, lao_v3_make(ball.x, ball.y, ball.z));
+    LAO_EXACT float apart = lao_sqrt(lao_v3_dot(q, q));
+    LAO_EXACT float nearest = 0.999999f * apart - ball.w;
+    return nearest <= least;
+}
+/* The next node behind all that is below this one; 0: none. */
+LAO_FN lao_int sdv_ball_next(lao_int node) {
+    lao_int next = node;
+    for (lao_int i = 0; i < 24; i++) {
+        if (next / 2 * 2 == next) {
+            break;
+        }
+        next = next / 2;
+    }
+    return next > 0 ? next + 1 : 0;
+}
+/* Of two cones the nearer, of two as near the lower. */
+LAO_FN sdv_near sdv_nearer(sdv_near n, float distance, float cone) {
+    sdv_near r = n;
+    if (distance < n.distance || (distance == n.distance && cone < n.cone)) {
+        r.distance = distance;
+        r.cone = cone;
+    }
+    return r;
+}
 /* Part of a ray in which a tree with shapes is looked for: only a union adds to the tree's box. */
 LAO_FN lao_v2 sdv_solid_span(lao_v2 box, bool united) {
     if (united) {
@@ -1571,11 +1647,11 @@ LAO_FN float sdv_outline_width(float width, float unit, float zoom) {
     LAO_EXACT float mm = width / zoom;
     return unit > 0.5f ? width : mm;
 }
-/* How near to a vessel a ray must pass for anything to be drawn of it, mm. `shadow`, `halo`: % of
-   the diameter. */
+/* How near to a vessel a ray must pass for anything to be drawn of it, mm. `shadow`, `halo`, `ink`:
+   % of the diameter. */
 LAO_FN float sdv_near_miss_reach(float silhouette, float contour, float shadow, float halo,
-                                 float diameter) {
-    LAO_EXACT float widest = 0.01f * lao_max(shadow, halo) * diameter;
+                                 float ink, float diameter) {
+    LAO_EXACT float widest = 0.01f * lao_max(lao_max(shadow, halo), ink) * diameter;
     return lao_max(lao_max(silhouette, contour), widest);
 }
 /* Place of p along a cone's axis, 0 at a, 1 at b. */
@@ -1673,6 +1749,14 @@ LAO_FN float sdv_empty_depth(lao_v4 depth) {
 LAO_FN float sdv_depth_of(lao_m4 view, lao_v3 p) {
     lao_v3 q = lao_transform(view, p);
     return -q.z;
+}
+/* Depth before the camera, mm, of a depth buffer's value: the inverse of the projection to 0 .. 1;
+   SDV_FAR where the buffer holds either end, so nothing. */
+LAO_FN float sdv_drawn_depth(lao_m4 projection, float value) {
+    LAO_EXACT float over = projection.w.z - value * projection.w.w;
+    LAO_EXACT float under = projection.z.z - value * projection.z.w;
+    LAO_EXACT float z = over / under;
+    return value > 0.0f && value < 1.0f && lao_abs(z) < SDV_FAR ? z : SDV_FAR;
 }
 /* The place of the world at that depth of a pixel. */
 LAO_FN lao_v3 sdv_depth_place(lao_m4 world, lao_v2 slope, float depth, float orthographic) {
@@ -2127,6 +2211,16 @@ LAO_FN float sdv_style_tone(float facing, float ambient, float diffuse, float li
     LAO_EXACT float r = (ambient + diffuse * lao_max(facing, 0.0f)) * light;
     return lao_clamp01(r);
 }
+/* What the void keeps of its ink where the ray passes a vessel at d_min mm: all beside it, nothing
+   from `reach` mm on (0: no end), and nothing where it is so steep that strokes would be grey. wide:
+   periods per pixel. */
+LAO_FN float sdv_void_share(float d_min, float reach, float wide) {
+    LAO_EXACT float part = lao_clamp01(1.0f - lao_max(d_min, 0.0f) / lao_max(reach, 1.0e-6f));
+    LAO_EXACT float all = part * part * (3.0f - 2.0f * part);
+    LAO_EXACT float seen = lao_clamp01(2.0f - 2.0f * wide / SDV_HALO_FOOTPRINT);
+    LAO_EXACT float r = seen * (reach > 0.0f ? all : 1.0f);
+    return r;
+}
 /* Red near, blue far (METHODS 6.1, RSH06). */
 LAO_FN lao_v3 sdv_chromadepth(float depth) {
     float d = lao_clamp01(depth);
@@ -2225,6 +2319,14 @@ static void sdv__give(const lao_allocator *allocator, void *taken) {
         memcpy(&bytes, memory, sizeof bytes);
         allocator->release(allocator->user, memory, bytes);
     }
+}
+
+/* Number k of a vector. */
+static float sdv__v3_at(lao_v3 v, uint32_t k) {
+    return k == 0 ? v.x : k == 1 ? v.y : v.z;
+}
+static float sdv__v4_at(lao_v4 v, uint32_t k) {
+    return k == 0 ? v.x : k == 1 ? v.y : k == 2 ? v.z : v.w;
 }
 
 /* Cuts one block into arrays: a first round with base NULL counts, a second one with the memory
@@ -2793,13 +2895,12 @@ static void sdv__tree_info(const sdv__build *b, sdv_tree *t) {
     info->joined = b->joined;
     for (i = 0; i < t->node_count; i++) {
         uint32_t children = t->child_counts[i];
-        const float *p = &t->nodes[i].x;
         info->leaves += children == 0 && t->parents[i] != SDV_NONE;
         info->branches += children >= 2;
         info->multifurcations += children >= 3;
         info->max_children = children > info->max_children ? children : info->max_children;
         for (k = 0; k < 3; k++) {
-            float v = p[k];
+            float v = sdv__v4_at(t->nodes[i], k);
             info->bounds[0][k] = i == 0 || v < info->bounds[0][k] ? v : info->bounds[0][k];
             info->bounds[1][k] = i == 0 || v > info->bounds[1][k] ? v : info->bounds[1][k];
         }
@@ -3361,6 +3462,126 @@ SDV_API int sdv_layout_write_svg(const sdv_reduced *reduced, const sdv_layout *l
     return stop ? stop : sdv__print(writer, "</g>\n</svg>\n");
 }
 
+/* ---- as a tree */
+typedef struct sdv__drawing {
+    const sdv_tree *tree;
+    const sdv_reduced *reduced;
+    const sdv_layout *layout;
+    sdv_svg_desc page;
+    float thin, widest; /* half thickness of the thinnest edge; greatest radius of a vessel, mm */
+    float *positions, *radii;
+    sdv_segment *segments;
+    uint32_t node_count, segment_count;
+} sdv__drawing;
+
+static void sdv__drawing_put(sdv__drawing *d, uint32_t id, uint32_t node, lao_v2 at) {
+    float part = d->widest > 0 ? lao_sqrt(d->tree->nodes[node].w / d->widest) : 0.0f;
+    d->positions[3 * (size_t)id] = at.x;
+    d->positions[3 * (size_t)id + 1] = d->page.height - at.y;
+    d->positions[3 * (size_t)id + 2] = 0.0f;
+    d->radii[id] = d->thin * (1.0f + 3.0f * part);
+}
+static void sdv__drawing_join(sdv__drawing *d, uint32_t parent, uint32_t child) {
+    d->segments[d->segment_count].parent = parent;
+    d->segments[d->segment_count++].child = child;
+}
+static float sdv__way(const sdv_tree *t, uint32_t node) {
+    const lao_v4 *a = t->nodes + node, *b = t->nodes + t->parents[node];
+    lao_v3 way = lao_v3_make(a->x - b->x, a->y - b->y, a->z - b->z);
+    return lao_sqrt(lao_v3_dot(way, way));
+}
+/* The edge above a reduced node, from below, with all nodes of the tree on it. */
+static void sdv__drawing_edge(sdv__drawing *d, uint32_t k) {
+    const sdv_reduced *r = d->reduced;
+    const sdv_tree *t = d->tree;
+    uint32_t up = r->parents[k], node = r->nodes[k], end, count = 0, i;
+    lao_v2 low = sdv__layout_place(d->layout, &d->page, k), top;
+    float way = 0.0f, whole = 0.0f;
+    if (up == SDV_NONE || r->ids[k] >= t->node_count) {
+        sdv__drawing_put(d, r->ids[k], node, low);
+        if (up != SDV_NONE) {
+            sdv__drawing_join(d, r->ids[up], r->ids[k]);
+        }
+        return;
+    }
+    top = sdv__layout_place(d->layout, &d->page, up);
+    end = r->nodes[up];
+    for (; node != end; node = t->parents[node]) {
+        whole += sdv__way(t, node);
+        count++;
+    }
+    node = r->nodes[k];
+    for (i = 0; i < count; i++, node = t->parents[node]) {
+        float at = whole > 0.0f ? way / whole : (float)i / (float)count;
+        sdv__drawing_put(d, node, node,
+                         lao_v2_make(low.x + at * (top.x - low.x), low.y + at * (top.y - low.y)));
+        sdv__drawing_join(d, t->parents[node] == end ? r->ids[up] : t->parents[node], node);
+        way += sdv__way(t, node);
+    }
+}
+/* The thinnest edge is a 200th of the page, less where edges are many, but never less than 2/5 of
+   that. */
+static void sdv__drawing_page(sdv__drawing *d, const sdv_drawing_desc *desc) {
+    sdv_drawing_desc none = {0, 0, 0, 0};
+    float unit, fits;
+    uint32_t i;
+    desc = desc ? desc : &none;
+    d->page.radial = desc->radial;
+    d->page.width = desc->width > 0 ? desc->width : desc->radial ? 150.0f : 200.0f;
+    d->page.height = desc->height > 0 ? desc->height : desc->radial ? 150.0f : 100.0f;
+    unit = lao_min(d->page.width, d->page.height) / 200.0f;
+    fits = 0.35f * d->page.width / (float)d->reduced->node_count;
+    d->thin = desc->thickness > 0 ? 0.5f * desc->thickness
+                                  : lao_min(0.5f * unit, lao_max(fits, 0.2f * unit));
+    for (i = 0; i < d->tree->node_count; i++) {
+        d->widest = lao_max(d->widest, d->tree->nodes[i].w);
+    }
+}
+SDV_API lao_result sdv_layout_tree(const sdv_host *host, const sdv_tree *tree,
+                                   const sdv_reduced *reduced, const sdv_layout *layout,
+                                   const sdv_drawing_desc *desc, sdv_tree *drawing) {
+    lao_allocator a = sdv__allocator(host);
+    lao_result result = LAO_ERROR_OUT_OF_MEMORY;
+    sdv__drawing d;
+    sdv_tree_desc out;
+    sdv_host silent;
+    uint32_t k;
+    if (!tree || !reduced || !layout || !drawing || !tree->memory || !reduced->memory ||
+        !layout->memory) {
+        return sdv__fail(host, SDV_LOG_NULL_ARGUMENT, "sdv_layout_tree");
+    }
+    memset(&d, 0, sizeof d);
+    memset(&out, 0, sizeof out);
+    memset(&silent, 0, sizeof silent); /* edges of length 0 are none of the host's business */
+    silent.allocator = a;
+    d.tree = tree;
+    d.reduced = reduced;
+    d.layout = layout;
+    d.node_count = tree->node_count;
+    for (k = 0; k < reduced->node_count; k++) {
+        d.node_count += reduced->ids[k] >= tree->node_count;
+    }
+    d.positions = (float *)sdv__take(&a, 3 * (uint64_t)d.node_count, sizeof *d.positions);
+    d.radii = (float *)sdv__take(&a, d.node_count, sizeof *d.radii);
+    d.segments = (sdv_segment *)sdv__take(&a, d.node_count, sizeof *d.segments);
+    if (d.positions && d.radii && d.segments) {
+        sdv__drawing_page(&d, desc);
+        for (k = 0; k < reduced->node_count; k++) {
+            sdv__drawing_edge(&d, k);
+        }
+        out.node_count = d.node_count;
+        out.positions = d.positions;
+        out.radii = d.radii;
+        out.segment_count = d.segment_count;
+        out.segments = d.segments;
+        result = sdv_tree_build(&silent, &out, drawing);
+    }
+    sdv__give(&a, d.positions);
+    sdv__give(&a, d.radii);
+    sdv__give(&a, d.segments);
+    return result == LAO_OK ? LAO_OK : sdv__fail(host, SDV_LOG_MEMORY, "drawing a layout");
+}
+
 /* ================================================================================================
  * jobs */
 
@@ -3426,14 +3647,36 @@ static size_t sdv__row(const sdv_grid *g, uint32_t y, uint32_t z) {
 static size_t sdv__layer_size(const sdv_grid *g) {
     return (size_t)g->size[0] * g->size[1];
 }
+/* ---- which cells list something: a bit each, words along x */
+static uint32_t sdv__parts(uint32_t n, uint32_t size) {
+    return (n + size - 1) / size;
+}
+static uint32_t sdv__words(const sdv_grid *g) {
+    return sdv__parts(g->size[0], 32);
+}
+/* row: y + size[1] z */
+static uint32_t *sdv__bits(const sdv_grid *g, size_t row) {
+    return g->occupied + sdv__words(g) * row;
+}
+/* The first bit from x on that is set; `end`: none before it. */
+static uint32_t sdv__next_bit(const uint32_t *bits, uint32_t x, uint32_t end) {
+    while (x < end) {
+        uint32_t word = bits[x / 32] >> (x % 32);
+        if (word & 1u) {
+            return x;
+        }
+        x = word ? x + 1 : (x | 31u) + 1;
+    }
+    return end;
+}
 
 /* ---- the box */
 static void sdv__ball_bounds(const lao_v4 *balls, uint32_t count, double low[3], double high[3]) {
     uint32_t i, k;
     for (i = 0; i < count; i++) {
-        const float *p = &balls[i].x;
         for (k = 0; k < 3; k++) {
-            double a = (double)p[k] - (double)balls[i].w, b = (double)p[k] + (double)balls[i].w;
+            double p = (double)sdv__v4_at(balls[i], k);
+            double a = p - (double)balls[i].w, b = p + (double)balls[i].w;
             low[k] = i == 0 || a < low[k] ? a : low[k];
             high[k] = i == 0 || b > high[k] ? b : high[k];
         }
@@ -3442,7 +3685,7 @@ static void sdv__ball_bounds(const lao_v4 *balls, uint32_t count, double low[3],
 /* Cubic cells around all balls, and two more at every side. */
 static int sdv__grid_fit(const sdv_tree *tree, uint32_t resolution, sdv_grid *g) {
     double low[3], high[3], most = 0;
-    float *origin = &g->origin.x;
+    float origin[3];
     uint32_t k;
     if (resolution < 16 || resolution > SDV__AXIS) {
         return 0;
@@ -3457,6 +3700,7 @@ static int sdv__grid_fit(const sdv_tree *tree, uint32_t resolution, sdv_grid *g)
         g->size[k] = (uint32_t)ceil((high[k] - low[k]) / (double)g->cell) + 4;
         origin[k] = (float)(0.5 * (low[k] + high[k]) - 0.5 * (double)g->size[k] * (double)g->cell);
     }
+    g->origin = lao_v3_make(origin[0], origin[1], origin[2]);
     return 1;
 }
 static int sdv__grid_frame(const sdv_tree *tree, const sdv_grid_desc *desc, sdv_grid *g) {
@@ -3484,12 +3728,12 @@ static int sdv__grid_frame(const sdv_tree *tree, const sdv_grid_desc *desc, sdv_
 /* Are all balls inside the box? */
 static int sdv__grid_holds(const sdv_grid *g, const sdv_tree *tree) {
     double low[3], high[3];
-    const float *origin = &g->origin.x;
     uint32_t k;
     sdv__ball_bounds(tree->nodes, tree->node_count, low, high);
     for (k = 0; k < 3; k++) {
-        double end = (double)origin[k] + (double)g->size[k] * (double)g->cell;
-        if (!(low[k] >= (double)origin[k] && high[k] <= end)) {
+        double origin = (double)sdv__v3_at(g->origin, k);
+        double end = origin + (double)g->size[k] * (double)g->cell;
+        if (!(low[k] >= origin && high[k] <= end)) {
             return 0;
         }
     }
@@ -3538,13 +3782,12 @@ typedef struct sdv__raster {
 
 static sdv__raster sdv__raster_make(const sdv_grid *g, const lao_v4 *cone) {
     sdv__raster r;
-    const float *a = &cone[0].x, *b = &cone[1].x, *o = &g->origin.x;
     double reach = (double)sdv_list_reach(g->cell) + 0.02 * (double)g->cell;
-    int k;
+    uint32_t k;
     for (k = 0; k < 3; k++) {
-        reach += 1e-6 * (fabs((double)a[k]) + fabs((double)b[k]) + fabs((double)o[k]));
-        r.a[k] = (double)a[k];
-        r.b[k] = (double)b[k];
+        r.a[k] = (double)sdv__v4_at(cone[0], k);
+        r.b[k] = (double)sdv__v4_at(cone[1], k);
+        reach += 1e-6 * (fabs(r.a[k]) + fabs(r.b[k]) + fabs((double)sdv__v3_at(g->origin, k)));
     }
     r.ra = (double)cone[0].w * (1 + 1e-6) + reach;
     r.rb = (double)cone[1].w * (1 + 1e-6) + reach;
@@ -3574,7 +3817,8 @@ static int sdv__raster_cut(const sdv__raster *r, int axis, double at, double t[2
 /* Cells of an axis that the balls of t may reach: range[0] .. range[1] - 1. */
 static void sdv__raster_range(const sdv_grid *g, const sdv__raster *r, int axis, const double t[2],
                               uint32_t range[2]) {
-    double low = 0, high = 0, origin = (double)(&g->origin.x)[axis], n = (double)g->size[axis];
+    double low = 0, high = 0, origin = (double)sdv__v3_at(g->origin, (uint32_t)axis),
+           n = (double)g->size[axis];
     int i;
     for (i = 0; i < 2; i++) {
         double c = r->a[axis] + t[i] * (r->b[axis] - r->a[axis]);
@@ -3588,7 +3832,7 @@ static void sdv__raster_range(const sdv_grid *g, const sdv__raster *r, int axis,
     range[1] = high > 0 ? (high < n ? (uint32_t)high : g->size[axis]) : 0;
 }
 static double sdv__plane(const sdv_grid *g, int axis, uint32_t i) {
-    return (double)(&g->origin.x)[axis] + ((double)i + 0.5) * (double)g->cell;
+    return (double)sdv__v3_at(g->origin, (uint32_t)axis) + ((double)i + 0.5) * (double)g->cell;
 }
 /* Calls visit(arg, cell, centre) for every cell of layer z that the cone may be listed in. */
 typedef void (*sdv__visitor)(void *arg, uint32_t cell, lao_v3 centre);
@@ -3659,13 +3903,19 @@ static void sdv__raster_binned(const sdv__fill *f, uint32_t z, sdv__visitor visi
 }
 static void sdv__count_layer(void *arg, uint32_t z) {
     sdv__fill *f = (sdv__fill *)arg;
-    lao_v4 *cells = f->grid->cells + sdv__row(f->grid, 0, z);
-    size_t i, n = sdv__layer_size(f->grid);
+    const sdv_grid *g = f->grid;
+    lao_v4 *cells = g->cells + sdv__row(g, 0, z);
+    size_t i, n = sdv__layer_size(g), rows = (size_t)g->size[1] * z;
     uint64_t sum = 0;
     memset(cells, 0, n * sizeof *cells);
     sdv__raster_binned(f, z, sdv__count_cell);
+    memset(sdv__bits(g, rows), 0, sizeof(uint32_t) * sdv__words(g) * g->size[1]);
     for (i = 0; i < n; i++) {
-        sum += (uint32_t)cells[i].w;
+        if (cells[i].w > 0.0f) {
+            uint32_t x = (uint32_t)(i % g->size[0]);
+            sdv__bits(g, rows + i / g->size[0])[x / 32] |= 1u << (x % 32);
+            sum += (uint32_t)cells[i].w;
+        }
     }
     f->layer_ids[z] = sum;
 }
@@ -3706,41 +3956,61 @@ static void sdv__envelope_make(sdv__envelope *e, const int32_t *apart, int32_t n
     }
 }
 
-/* The nearest occupied x of each row of a layer; SDV_NONE: none. */
-static void sdv__layer_rows(const sdv_grid *g, uint32_t z, uint32_t *out) {
-    uint32_t x, y, nx = g->size[0];
-    for (y = 0; y < g->size[1]; y++) {
-        const lao_v4 *cells = g->cells + sdv__row(g, y, z);
-        uint32_t *row = out + (size_t)nx * y, last = SDV_NONE;
-        for (x = 0; x < nx; x++) {
-            last = cells[x].w > 0.0f ? x : last;
+/* The nearest occupied x of each x of a row, of two as near the lower; SDV_NONE: none. */
+static void sdv__row_nearest(const uint32_t *bits, uint32_t nx, uint32_t *row) {
+    uint32_t x = 0, last = SDV_NONE, next = sdv__next_bit(bits, 0, nx);
+    while (next < nx) {
+        uint32_t until = last == SDV_NONE ? 0 : (last + next) / 2 + 1;
+        for (; x < until; x++) {
             row[x] = last;
         }
-        last = SDV_NONE;
-        for (x = nx; x-- > 0;) { /* the one behind wins only when it is nearer */
-            last = cells[x].w > 0.0f ? x : last;
-            if (last != SDV_NONE && (row[x] == SDV_NONE || last - x < x - row[x])) {
-                row[x] = last;
-            }
+        for (; x <= next; x++) {
+            row[x] = next;
         }
+        last = next;
+        next = sdv__next_bit(bits, next + 1, nx);
+    }
+    for (; x < nx; x++) {
+        row[x] = last;
     }
 }
-/* From there x + 65536 y of the nearest occupied cell of the layer. */
-static void sdv__layer_columns(const sdv_grid *g, uint32_t *out) {
+static void sdv__layer_rows(const sdv_grid *g, uint32_t z, uint32_t *rows) {
+    uint32_t y;
+    for (y = 0; y < g->size[1]; y++) {
+        sdv__row_nearest(sdv__bits(g, y + (size_t)g->size[1] * z), g->size[0],
+                         rows + (size_t)g->size[0] * y);
+    }
+}
+/* What a cell keeps to be found anew in a change. */
+enum { SDV__LISTED = 1, SDV__NEARER = 2, SDV__TURNED = 4 }; /* its list, nearest cell, `layer` */
+/* From the rows x + 65536 y of the nearest occupied cell of the layer. `wanted` (Optional): the x
+   that need it; `stale` (Optional): gets SDV__TURNED where that is news. */
+static void sdv__layer_columns(const sdv_grid *g, const uint32_t *rows, const unsigned char *wanted,
+                               uint32_t *out, unsigned char *stale) {
     uint32_t x, y, nx = g->size[0], ny = g->size[1];
     for (x = 0; x < nx; x++) {
         int32_t apart[SDV__AXIS], k = 0;
         uint32_t best[SDV__AXIS];
         sdv__envelope e;
+        if (wanted && !wanted[x]) {
+            continue;
+        }
         for (y = 0; y < ny; y++) {
-            int32_t d = (int32_t)out[(size_t)nx * y + x] - (int32_t)x;
-            best[y] = out[(size_t)nx * y + x];
+            int32_t d = (int32_t)rows[(size_t)nx * y + x] - (int32_t)x;
+            best[y] = rows[(size_t)nx * y + x];
             apart[y] = best[y] == SDV_NONE ? -1 : d * d;
         }
         sdv__envelope_make(&e, apart, (int32_t)ny);
-        for (y = 0; y < ny && e.count > 0; y++) {
-            k += (int32_t)y > e.until[k];
-            out[(size_t)nx * y + x] = best[e.place[k]] + 65536 * (uint32_t)e.place[k];
+        for (y = 0; y < ny; y++) {
+            uint32_t value = SDV_NONE;
+            if (e.count > 0) {
+                k += (int32_t)y > e.until[k];
+                value = best[e.place[k]] + 65536 * (uint32_t)e.place[k];
+            }
+            if (stale && out[(size_t)nx * y + x] != value) {
+                stale[(size_t)nx * y + x] |= SDV__TURNED;
+            }
+            out[(size_t)nx * y + x] = value;
         }
     }
 }
@@ -3755,11 +4025,11 @@ static void sdv__fill_layer(void *arg, uint32_t z) {
     }
     sdv__raster_binned(f, z, sdv__fill_cell);
     sdv__layer_rows(g, z, g->layer + first);
-    sdv__layer_columns(g, g->layer + first);
+    sdv__layer_columns(g, g->layer + first, NULL, g->layer + first, NULL);
 }
 
-/* The nearest occupied cell of a cell, `apart2` cells squared away. `stale` (Optional): gets bit 2
-   where that is news. */
+/* The nearest occupied cell of a cell, `apart2` cells squared away. `stale` (Optional): gets
+   SDV__NEARER where that is news. */
 static void sdv__nearest_write(sdv_grid *g, size_t cell, size_t nearest, int32_t apart2,
                                unsigned char *stale) {
     lao_v4 *c = g->cells + cell;
@@ -3767,23 +4037,23 @@ static void sdv__nearest_write(sdv_grid *g, size_t cell, size_t nearest, int32_t
         if (c->y == (float)nearest) {
             return;
         }
-        stale[cell] |= 2;
+        stale[cell] |= SDV__NEARER;
     }
     c->y = (float)nearest;
     if (!(c->w > 0.0f)) {
         c->z = sdv_far_step(lao_sqrt((float)apart2) * g->cell, g->cell);
     }
 }
-/* Columns along z at one y, 16 at a time: the nearest of all layers' nearest. `wanted` (Optional):
-   the x that need it. */
+/* Columns along z at one y, 16 at a time: the nearest of all layers' nearest. `wanted`, `layers`
+   (Optional): the columns and the z that need it. */
 enum { SDV__WIDE = 16 };
 static void sdv__column(sdv_grid *g, uint32_t x, uint32_t y, const uint32_t *best,
-                        unsigned char *stale) {
+                        const unsigned char *layers, unsigned char *stale) {
     int32_t apart[SDV__AXIS], k = 0;
     sdv__envelope e;
     uint32_t z, nz = g->size[2];
     for (z = 0; z < nz; z++) {
-        uint32_t cell = best[z * SDV__WIDE];
+        uint32_t cell = best[(size_t)z * SDV__WIDE];
         int32_t dx = (int32_t)(cell & 65535u) - (int32_t)x;
         int32_t dy = (int32_t)(cell >> 16) - (int32_t)y;
         apart[z] = cell == SDV_NONE ? -1 : dx * dx + dy * dy;
@@ -3793,34 +4063,37 @@ static void sdv__column(sdv_grid *g, uint32_t x, uint32_t y, const uint32_t *bes
         int32_t winner, dz;
         uint32_t cell;
         k += (int32_t)z > e.until[k];
+        if (layers && !layers[z]) {
+            continue;
+        }
         winner = e.place[k];
         dz = winner - (int32_t)z;
-        cell = best[winner * SDV__WIDE];
+        cell = best[(size_t)winner * SDV__WIDE];
         sdv__nearest_write(g, sdv__row(g, y, z) + x,
                            sdv__row(g, cell >> 16, (uint32_t)winner) + (cell & 65535u),
                            apart[winner] + dz * dz, stale);
     }
 }
-static void sdv__columns(sdv_grid *g, uint32_t y, const unsigned char *wanted,
-                         unsigned char *stale) {
-    uint32_t best[SDV__AXIS * SDV__WIDE], x0, x, z, nx = g->size[0];
-    for (x0 = 0; x0 < nx; x0 += SDV__WIDE) {
-        uint32_t wide = nx - x0 < SDV__WIDE ? nx - x0 : (uint32_t)SDV__WIDE;
-        if (wanted && !memchr(wanted + x0, 1, wide)) {
-            continue;
-        }
-        for (z = 0; z < g->size[2]; z++) {
-            memcpy(best + z * SDV__WIDE, g->layer + sdv__row(g, y, z) + x0, wide * sizeof *best);
-        }
-        for (x = x0; x < x0 + wide; x++) {
-            if (!wanted || wanted[x]) {
-                sdv__column(g, x, y, best + (x - x0), stale);
-            }
+static void sdv__columns(sdv_grid *g, uint32_t x0, uint32_t y, const unsigned char *wanted,
+                         const unsigned char *layers, unsigned char *stale) {
+    uint32_t best[SDV__AXIS * SDV__WIDE], i, z;
+    uint32_t wide = g->size[0] - x0 < SDV__WIDE ? g->size[0] - x0 : (uint32_t)SDV__WIDE;
+    for (z = 0; z < g->size[2]; z++) {
+        memcpy(best + (size_t)z * SDV__WIDE, g->layer + sdv__row(g, y, z) + x0,
+               wide * sizeof *best);
+    }
+    for (i = 0; i < wide; i++) {
+        if (!wanted || wanted[i]) {
+            sdv__column(g, x0 + i, y, best + i, layers, stale);
         }
     }
 }
 static void sdv__column_slab(void *arg, uint32_t y) {
-    sdv__columns(((sdv__fill *)arg)->grid, y, NULL, NULL);
+    sdv_grid *g = ((sdv__fill *)arg)->grid;
+    uint32_t x0;
+    for (x0 = 0; x0 < g->size[0]; x0 += SDV__WIDE) {
+        sdv__columns(g, x0, y, NULL, NULL, NULL);
+    }
 }
 
 /* ---- distances */
@@ -3839,25 +4112,18 @@ static float sdv__list_distance(const sdv_grid *g, const lao_v4 *cell, lao_v3 p,
     }
     return least;
 }
-/* Of the cells' centres to the list of their nearest occupied cell. `stale` (Optional): which cells
-   need it: those with bit 2, and those nearest to one with bit 1. */
-static void sdv__refine_layer(const sdv_grid *g, uint32_t z, const unsigned char *stale) {
+/* Of the cells' centres to the list of their nearest occupied cell. */
+static void sdv__refine_layer(void *arg, uint32_t z) {
+    const sdv_grid *g = ((const sdv__fill *)arg)->grid;
     sdv_box box = sdv__grid_box(g);
     uint32_t x, y, cone;
     for (y = 0; y < g->size[1]; y++) {
-        size_t row = sdv__row(g, y, z);
+        lao_v4 *row = g->cells + sdv__row(g, y, z);
         for (x = 0; x < g->size[0]; x++) {
-            lao_v4 *c = g->cells + row + x;
-            size_t nearest = (size_t)c->y;
-            if (!stale || (stale[row + x] & 2) || (stale[nearest] & 1)) {
-                c->x =
-                    sdv__list_distance(g, g->cells + nearest, sdv_cell_centre(box, x, y, z), &cone);
-            }
+            row[x].x = sdv__list_distance(g, g->cells + (size_t)row[x].y,
+                                          sdv_cell_centre(box, x, y, z), &cone);
         }
     }
-}
-static void sdv__refine_slab(void *arg, uint32_t z) {
-    sdv__refine_layer(((sdv__fill *)arg)->grid, z, NULL);
 }
 
 /* ---- building */
@@ -3922,13 +4188,13 @@ static lao_result sdv__grid_fill(sdv__work *work, sdv_grid *g, uint32_t *first,
     cancelled = sdv__run(work, g->size[2], sdv__count_layer, &f);
     if (!cancelled) {
         sum = sdv__layer_starts(g, layer_ids);
-        g->id_count = (uint32_t)sum;
+        g->id_count = g->id_room = (uint32_t)sum;
         g->ids = sum <= SDV__EXACT ? (float *)sdv__take(&g->allocator, sum, sizeof *g->ids) : NULL;
     }
     if (g->ids) {
         cancelled = sdv__run(work, g->size[2], sdv__fill_layer, &f) ||
                     sdv__run(work, g->size[1], sdv__column_slab, &f) ||
-                    sdv__run(work, g->size[2], sdv__refine_slab, &f);
+                    sdv__run(work, g->size[2], sdv__refine_layer, &f);
     }
     sdv__give(&g->allocator, binned);
     if (cancelled) {
@@ -3964,12 +4230,14 @@ SDV_API lao_result sdv_grid_build(const sdv_host *host, const sdv_tree *tree,
     g.allocator = sdv__allocator(host);
     g.cells = (lao_v4 *)sdv__take(&g.allocator, g.cell_count, sizeof *g.cells);
     g.layer = (uint32_t *)sdv__take(&g.allocator, g.cell_count, sizeof *g.layer);
+    g.occupied = (uint32_t *)sdv__take(
+        &g.allocator, (uint64_t)sdv__words(&g) * g.size[1] * g.size[2], sizeof *g.occupied);
     g.cones = (lao_v4 *)sdv__take(&g.allocator, 2 * (uint64_t)g.cone_count, sizeof *g.cones);
     g.cone_nodes =
         (uint32_t *)sdv__take(&g.allocator, 2 * (uint64_t)g.cone_count, sizeof *g.cone_nodes);
     first = (uint32_t *)sdv__take(&g.allocator, SDV__AXIS + 1, sizeof *first);
     layer_ids = (uint64_t *)sdv__take(&g.allocator, SDV__AXIS, sizeof *layer_ids);
-    if (g.cells && g.layer && g.cones && g.cone_nodes && first && layer_ids) {
+    if (g.cells && g.layer && g.occupied && g.cones && g.cone_nodes && first && layer_ids) {
         work.host = host;
         work.done = 0;
         work.total = 3 * (uint64_t)g.size[2] + g.size[1];
@@ -3993,6 +4261,7 @@ SDV_API void sdv_grid_free(sdv_grid *grid) {
     if (grid && grid->allocator.release) {
         sdv__give(&grid->allocator, grid->cells);
         sdv__give(&grid->allocator, grid->layer);
+        sdv__give(&grid->allocator, grid->occupied);
         sdv__give(&grid->allocator, grid->ids);
         sdv__give(&grid->allocator, grid->cones);
         sdv__give(&grid->allocator, grid->cone_nodes);
@@ -4001,32 +4270,66 @@ SDV_API void sdv_grid_free(sdv_grid *grid) {
 }
 
 /* ---- changing */
-/* Cells whose list may change are marked, then all lists are copied into a new array with the
-   changed ones merged in; what is nearest is found anew in the layers whose occupied cells changed,
-   and in the columns along z where that changed anything. */
+/* Cells whose lists change are found, lists are moved up and down in place, what is nearest is
+   found anew in the layers whose occupied cells change, and in those columns along z where that
+   matters. Blocks of cells that are nearer to others than to all that changes are left out from the
+   start. */
+enum { SDV__BLOCK = 8 };
 typedef struct sdv__change {
     sdv_grid *grid;
-    uint32_t *changed; /* cones, ascending */
-    lao_v4 *cones;     /* their new ends, 2 each */
+    uint32_t *changed;         /* cones, ascending */
+    lao_v4 *cones;             /* their new ends, 2 each; once the grid has those, the old ones */
+    unsigned char *is_changed; /* per cone */
     uint32_t changed_count;
-    unsigned char *stale;              /* per cell: 1: its list may change, 2: another is nearest */
-    unsigned char touched[SDV__AXIS];  /* per layer: it has cells with bit 1 */
-    unsigned char turned[SDV__AXIS];   /* per layer: its occupied cells changed */
-    uint32_t scratch_layer[SDV__AXIS]; /* per layer: place in scratch */
-    uint64_t layer_ids[SDV__AXIS];
-    uint32_t *scratch; /* new `layer` values of touched layers */
-    float *ids;
+    unsigned char *stale;       /* per cell: SDV__LISTED, ... */
+    unsigned char *close;       /* per block: something in it may change */
+    uint32_t blocks[3];         /* along each axis */
+    uint32_t *was;              /* occupied cells before */
+    uint32_t *rows, row_layers; /* nearest along x in the layers whose occupied cells change */
+    uint32_t row_layer[SDV__AXIS];
+    unsigned char turned[SDV__AXIS]; /* per layer: is it one of those? */
+    /* Cells whose list changes, layer by layer: the cell, the place and length of its old list, the
+       length of its new one and how far (entries) what lies before it moves. */
+    uint32_t *listed, *places, *olds, *news;
+    int32_t *moves;                    /* one more: of what lies behind the last */
+    uint32_t listed_in[SDV__AXIS + 1]; /* where a layer's begin */
+    uint64_t fresh_in[SDV__AXIS + 1];  /* and their new lists */
+    float *fresh;
+    float *ids; /* a larger array, where the grid's is too small */
+    uint32_t room;
 } sdv__change;
 
-static void sdv__mark_cell(void *arg, uint32_t cell, lao_v3 centre) {
-    (void)centre;
-    ((unsigned char *)arg)[cell] = 1;
+static lao_v3 sdv__centre(const sdv_grid *g, size_t cell) {
+    size_t row = cell / g->size[0];
+    return sdv_cell_centre(sdv__grid_box(g), (uint32_t)(cell - row * g->size[0]),
+                           (uint32_t)(row % g->size[1]), (uint32_t)(row / g->size[1]));
 }
-/* The new list of a marked cell: the old one without changed cones, and the changed ones that are
-   near enough, in order. Returns its length; `out` NULL: only that. */
-static uint32_t sdv__merge_list(const sdv__change *c, const lao_v4 *cell, lao_v3 centre,
-                                float *out) {
+/* Blocks at y and z, along x. */
+static const unsigned char *sdv__close_row(const sdv__change *c, uint32_t y, uint32_t z) {
+    return c->close + c->blocks[0] * (y / SDV__BLOCK + (size_t)c->blocks[1] * (z / SDV__BLOCK));
+}
+/* ---- which lists change */
+typedef struct sdv__marking {
+    const sdv__change *change;
+    const lao_v4 *cone;
+} sdv__marking;
+static void sdv__mark_cell(void *arg, uint32_t cell, lao_v3 centre) {
+    const sdv__marking *m = (const sdv__marking *)arg;
+    unsigned char *stale = m->change->stale + cell;
+    if (!*stale && sdv__is_listed(m->change->grid, centre, m->cone)) {
+        *stale = SDV__LISTED;
+    }
+}
+static size_t sdv__next_listed(const sdv__change *c, size_t cell, size_t end) {
+    const void *found = memchr(c->stale + cell, SDV__LISTED, end - cell);
+    return found ? (size_t)((const unsigned char *)found - c->stale) : end;
+}
+/* The new list of a cell: the old one without changed cones, and the changed ones that are near
+   enough, in order. Returns its length; `out` NULL: only that. */
+static uint32_t sdv__merge_list(const sdv__change *c, size_t index, float *out) {
     const sdv_grid *g = c->grid;
+    const lao_v4 *cell = g->cells + index;
+    lao_v3 centre = sdv__centre(g, index);
     uint32_t i = 0, k = 0, n = 0, old_count = (uint32_t)cell->w;
     const float *old = old_count ? g->ids + (size_t)cell->z : NULL;
     while (i < old_count || k < c->changed_count) {
@@ -4046,79 +4349,281 @@ static uint32_t sdv__merge_list(const sdv__change *c, const lao_v4 *cell, lao_v3
 static void sdv__mark_layer(void *arg, uint32_t z) {
     sdv__change *c = (sdv__change *)arg;
     const sdv_grid *g = c->grid;
-    sdv_box box = sdv__grid_box(g);
-    size_t n = sdv__layer_size(g), first = sdv__row(g, 0, z), i;
-    uint64_t sum = 0;
+    size_t first = sdv__row(g, 0, z), end = first + sdv__layer_size(g), cell;
+    sdv__marking m;
     uint32_t k;
-    memset(c->stale + first, 0, n);
+    m.change = c;
+    memset(c->stale + first, 0, end - first);
     for (k = 0; k < c->changed_count; k++) {
-        sdv__raster_layer(g, g->cones + 2 * (size_t)c->changed[k], z, sdv__mark_cell, c->stale);
-        sdv__raster_layer(g, c->cones + 2 * (size_t)k, z, sdv__mark_cell, c->stale);
+        m.cone = g->cones + 2 * (size_t)c->changed[k];
+        sdv__raster_layer(g, m.cone, z, sdv__mark_cell, &m);
+        m.cone = c->cones + 2 * (size_t)k;
+        sdv__raster_layer(g, m.cone, z, sdv__mark_cell, &m);
     }
-    c->touched[z] = memchr(c->stale + first, 1, n) != NULL;
-    for (i = 0; i < n; i++) {
-        const lao_v4 *cell = g->cells + first + i;
-        if (c->stale[first + i]) {
-            uint32_t x = (uint32_t)(i % g->size[0]), y = (uint32_t)(i / g->size[0]);
-            sum += sdv__merge_list(c, cell, sdv_cell_centre(box, x, y, z), NULL);
-        } else {
-            sum += (uint32_t)cell->w;
+    for (cell = sdv__next_listed(c, first, end); cell < end;
+         cell = sdv__next_listed(c, cell + 1, end)) {
+        uint32_t n = sdv__merge_list(c, cell, NULL);
+        c->turned[z] |= (n > 0) != (g->cells[cell].w > 0.0f);
+        c->listed_in[z]++;
+        c->fresh_in[z] += n;
+    }
+}
+static void sdv__merge_layer(void *arg, uint32_t z) {
+    sdv__change *c = (sdv__change *)arg;
+    const sdv_grid *g = c->grid;
+    size_t first = sdv__row(g, 0, z), end = first + sdv__layer_size(g), cell;
+    uint32_t i = c->listed_in[z];
+    uint64_t at = c->fresh_in[z];
+    for (cell = sdv__next_listed(c, first, end); cell < end;
+         cell = sdv__next_listed(c, cell + 1, end)) {
+        c->listed[i] = (uint32_t)cell;
+        c->olds[i] = (uint32_t)g->cells[cell].w;
+        c->news[i] = sdv__merge_list(c, cell, c->fresh + at);
+        at += c->news[i++];
+    }
+}
+/* Could anything in a block be nearest to a cell whose list changes? All cells of the block are
+   within `reach` of its middle, whose nearest cell is `apart` away: within apart + reach of each is
+   one that stays, unless it lists what changes. What lists it is within 2 cells of it. */
+static void sdv__close_blocks(void *arg, uint32_t bz) {
+    sdv__change *c = (sdv__change *)arg;
+    const sdv_grid *g = c->grid;
+    uint32_t b, k, axis, n = c->blocks[0] * c->blocks[1];
+    for (b = 0; b < n; b++) {
+        uint32_t at[3], middle[3];
+        double reach = 0, apart = 0;
+        size_t nearest;
+        float within;
+        lao_v3 p;
+        at[0] = b % c->blocks[0];
+        at[1] = b / c->blocks[0];
+        at[2] = bz;
+        for (axis = 0; axis < 3; axis++) {
+            uint32_t low = SDV__BLOCK * at[axis], end = g->size[axis] - low;
+            end = low + (end < SDV__BLOCK ? end : SDV__BLOCK);
+            middle[axis] = (low + end) / 2;
+            reach += (double)(middle[axis] - low) * (middle[axis] - low);
+        }
+        nearest = (size_t)g->cells[sdv__row(g, middle[1], middle[2]) + middle[0]].y;
+        for (axis = 0; axis < 3; axis++) {
+            double d = (double)(nearest % g->size[axis]) - middle[axis];
+            nearest /= g->size[axis];
+            apart += d * d;
+        }
+        p = sdv_cell_centre(sdv__grid_box(g), middle[0], middle[1], middle[2]);
+        within = (float)(sqrt(apart) + 2 * sqrt(reach) + 2.1) * g->cell;
+        c->close[(size_t)n * bz + b] = 0;
+        for (k = 0; k < c->changed_count && !c->close[(size_t)n * bz + b]; k++) {
+            const lao_v4 *old = g->cones + 2 * (size_t)c->changed[k],
+                         *fresh = c->cones + 2 * (size_t)k;
+            c->close[(size_t)n * bz + b] = sdv_round_cone(p, old[0], old[1]) < within ||
+                                           sdv_round_cone(p, fresh[0], fresh[1]) < within;
         }
     }
-    c->layer_ids[z] = sum;
+}
+
+/* ---- lists */
+/* Where the old lists are and how far everything moves. */
+static void sdv__place_lists(sdv__change *c, uint32_t count) {
+    const sdv_grid *g = c->grid;
+    uint32_t i, next = g->id_count;
+    size_t end = g->cell_count;
+    int32_t move = 0;
+    for (i = count; i-- > 0;) { /* an empty list lies where the next one begins */
+        size_t cell = c->listed[i];
+        if (!c->olds[i]) {
+            size_t row = cell / g->size[0], from = cell - row * g->size[0];
+            for (; row * g->size[0] < end; row++, from = 0) {
+                uint32_t x = sdv__next_bit(sdv__bits(g, row), (uint32_t)from, g->size[0]);
+                if (x < g->size[0]) {
+                    cell = row * g->size[0] + x;
+                    next = cell < end ? (uint32_t)g->cells[cell].z : next;
+                    break;
+                }
+            }
+        }
+        next = c->olds[i] ? (uint32_t)g->cells[cell].z : next;
+        end = c->listed[i];
+        c->places[i] = next;
+    }
+    for (i = 0; i < count; i++) {
+        c->moves[i] = move;
+        move += (int32_t)c->news[i] - (int32_t)c->olds[i];
+    }
+    c->moves[count] = move;
+}
+/* What lies between two changed lists, those that move up last to first, then those that move down
+   first to last: none is written where another is still to be read. */
+static void sdv__move_lists(const sdv__change *c, uint32_t count) {
+    float *ids = c->grid->ids;
+    const float *fresh = c->fresh;
+    uint32_t k, i;
+    for (k = 0; k < 2 * (count + 1); k++) {
+        uint32_t from, until;
+        int32_t move;
+        i = k <= count ? count - k : k - count - 1;
+        from = i > 0 ? c->places[i - 1] + c->olds[i - 1] : 0;
+        until = i < count ? c->places[i] : c->grid->id_count;
+        move = c->moves[i];
+        if (k <= count ? move > 0 : move < 0) {
+            memmove(ids + (int64_t)from + move, ids + from, (until - from) * sizeof *ids);
+        }
+    }
+    for (i = 0; i < count; i++) {
+        memcpy(ids + (int64_t)c->places[i] + c->moves[i], fresh, c->news[i] * sizeof *ids);
+        fresh += c->news[i];
+    }
+}
+/* Cells from .. until - 1: their lists have moved. */
+static void sdv__move_cells(const sdv_grid *g, size_t from, size_t until, int32_t move) {
+    size_t row = from / g->size[0];
+    uint32_t x = (uint32_t)(from - row * g->size[0]);
+    for (; move != 0 && from < until; row++, x = 0) {
+        lao_v4 *cells = g->cells + row * g->size[0];
+        uint32_t end = until - from < g->size[0] - x ? x + (uint32_t)(until - from) : g->size[0];
+        from += end - x;
+        for (x = sdv__next_bit(sdv__bits(g, row), x, end); x < end;
+             x = sdv__next_bit(sdv__bits(g, row), x + 1, end)) {
+            cells[x].z += (float)move;
+        }
+    }
 }
 static void sdv__relist_layer(void *arg, uint32_t z) {
     sdv__change *c = (sdv__change *)arg;
     sdv_grid *g = c->grid;
-    sdv_box box = sdv__grid_box(g);
-    size_t n = sdv__layer_size(g), first = sdv__row(g, 0, z), at = (size_t)c->layer_ids[z], i;
-    for (i = 0; i < n; i++) {
-        lao_v4 *cell = g->cells + first + i;
-        uint32_t count = (uint32_t)cell->w;
-        if (c->stale[first + i]) {
-            uint32_t x = (uint32_t)(i % g->size[0]), y = (uint32_t)(i / g->size[0]);
-            count = sdv__merge_list(c, cell, sdv_cell_centre(box, x, y, z), c->ids + at);
-            c->turned[z] |= (count > 0) != (cell->w > 0.0f);
-            cell->w = (float)count;
-        } else if (count > 0) {
-            memcpy(c->ids + at, g->ids + (size_t)cell->z, count * sizeof *c->ids);
+    size_t from = sdv__row(g, 0, z), until = from + sdv__layer_size(g);
+    uint32_t i;
+    for (i = c->listed_in[z]; i < c->listed_in[z + 1]; i++) {
+        lao_v4 *cell = g->cells + c->listed[i];
+        size_t row = c->listed[i] / g->size[0];
+        uint32_t x = c->listed[i] - (uint32_t)(row * g->size[0]);
+        sdv__move_cells(g, from, c->listed[i], c->moves[i]);
+        from = (size_t)c->listed[i] + 1;
+        cell->w = (float)c->news[i];
+        if (c->news[i]) {
+            cell->z = (float)((int64_t)c->places[i] + c->moves[i]);
+            sdv__bits(g, row)[x / 32] |= 1u << (x % 32);
+        } else {
+            sdv__bits(g, row)[x / 32] &= ~(1u << (x % 32));
         }
-        if (count > 0) {
-            cell->z = (float)at;
-        }
-        at += count;
     }
+    sdv__move_cells(g, from, until, c->moves[i]);
 }
+
+/* ---- what is nearest */
 static void sdv__renear_layer(void *arg, uint32_t z) {
     sdv__change *c = (sdv__change *)arg;
-    if (c->turned[z]) {
-        uint32_t *out = c->scratch + sdv__layer_size(c->grid) * c->scratch_layer[z];
-        sdv__layer_rows(c->grid, z, out);
-        sdv__layer_columns(c->grid, out);
+    const sdv_grid *g = c->grid;
+    uint32_t nx = g->size[0], x, y, before[SDV__AXIS];
+    unsigned char wanted[SDV__AXIS];
+    uint32_t *rows;
+    if (!c->turned[z]) {
+        return;
     }
+    rows = c->rows + sdv__layer_size(g) * c->row_layer[z];
+    memset(wanted, 0, sizeof wanted);
+    sdv__layer_rows(g, z, rows);
+    for (y = 0; y < g->size[1]; y++) {
+        size_t row = y + (size_t)g->size[1] * z;
+        const uint32_t *was = c->was + sdv__words(g) * row;
+        if (memcmp(was, sdv__bits(g, row), sdv__words(g) * sizeof *was) != 0) {
+            sdv__row_nearest(was, nx, before);
+            for (x = 0; x < nx; x++) {
+                wanted[x] |= before[x] != rows[(size_t)nx * y + x];
+            }
+        }
+    }
+    sdv__layer_columns(g, rows, wanted, g->layer + sdv__row(g, 0, z), c->stale + sdv__row(g, 0, z));
+}
+/* The z of a group of columns that lie in close blocks; 0: none. */
+static int sdv__close_layers(const sdv__change *c, uint32_t x0, uint32_t y, unsigned char *layers) {
+    uint32_t z, last = x0 + SDV__WIDE - 1, any = 0;
+    last = last < c->grid->size[0] ? last : c->grid->size[0] - 1;
+    for (z = 0; z < c->grid->size[2]; z++) {
+        const unsigned char *row = sdv__close_row(c, y, z);
+        layers[z] = row[x0 / SDV__BLOCK] | row[last / SDV__BLOCK];
+        any |= layers[z];
+    }
+    return any != 0;
 }
 static void sdv__renear_slab(void *arg, uint32_t y) {
     sdv__change *c = (sdv__change *)arg;
     sdv_grid *g = c->grid;
-    unsigned char wanted[SDV__AXIS];
-    uint32_t x, z;
-    memset(wanted, 0, sizeof wanted);
-    for (z = 0; z < g->size[2]; z++) {
-        uint32_t *row = g->layer + sdv__row(g, y, z);
-        const uint32_t *fresh = c->scratch + sdv__layer_size(g) * c->scratch_layer[z];
-        for (x = 0; c->turned[z] && x < g->size[0]; x++) {
-            uint32_t value = fresh[(size_t)g->size[0] * y + x];
-            wanted[x] |= row[x] != value;
-            row[x] = value;
+    unsigned char wanted[SDV__WIDE], layers[SDV__AXIS];
+    uint32_t x0, i, z;
+    for (x0 = 0; x0 < g->size[0]; x0 += SDV__WIDE) {
+        uint32_t wide = g->size[0] - x0 < SDV__WIDE ? g->size[0] - x0 : (uint32_t)SDV__WIDE;
+        memset(wanted, 0, sizeof wanted);
+        if (!sdv__close_layers(c, x0, y, layers)) {
+            continue;
+        }
+        for (z = 0; z < g->size[2]; z++) {
+            const unsigned char *stale = c->stale + sdv__row(g, y, z) + x0;
+            for (i = 0; c->turned[z] && i < wide; i++) {
+                wanted[i] |= stale[i] & SDV__TURNED;
+            }
+        }
+        if (memchr(wanted, SDV__TURNED, wide)) {
+            sdv__columns(g, x0, y, wanted, layers, c->stale);
         }
     }
-    sdv__columns(g, y, wanted, c->stale);
+}
+
+/* ---- distances */
+/* Of a place whose nearest cell is as before but lists something else. What did not change is no
+   nearer than all was before. */
+static float sdv__changed_distance(const sdv__change *c, const lao_v4 *cell, lao_v3 p,
+                                   float before) {
+    const sdv_grid *g = c->grid;
+    const float *ids = g->ids + (size_t)cell->z;
+    uint32_t i, k, n = (uint32_t)cell->w, cone;
+    float least = SDV_FAR;
+    for (i = 0; i < n; i++) {
+        if (c->is_changed[(size_t)ids[i]]) {
+            const lao_v4 *ends = g->cones + 2 * (size_t)ids[i];
+            float d = sdv_round_cone(p, ends[0], ends[1]);
+            least = d < least ? d : least;
+        }
+    }
+    if (least <= before) {
+        return least;
+    }
+    for (k = 0; k < c->changed_count; k++) {
+        const lao_v4 *ends = c->cones + 2 * (size_t)k;
+        if (sdv_round_cone(p, ends[0], ends[1]) <= before) {
+            return sdv__list_distance(g, cell, p, &cone);
+        }
+    }
+    return before;
 }
 static void sdv__rerefine_layer(void *arg, uint32_t z) {
     const sdv__change *c = (const sdv__change *)arg;
-    sdv__refine_layer(c->grid, z, c->stale);
+    const sdv_grid *g = c->grid;
+    sdv_box box = sdv__grid_box(g);
+    uint32_t x, y, cone;
+    for (y = 0; y < g->size[1]; y++) {
+        size_t row = sdv__row(g, y, z);
+        const unsigned char *close = sdv__close_row(c, y, z);
+        for (x = 0; x < g->size[0]; x++) {
+            lao_v4 *cell = g->cells + row + x;
+            size_t nearest;
+            if (!close[x / SDV__BLOCK]) {
+                x |= SDV__BLOCK - 1;
+                continue;
+            }
+            nearest = (size_t)cell->y;
+            if (c->stale[row + x] & SDV__NEARER) {
+                cell->x =
+                    sdv__list_distance(g, g->cells + nearest, sdv_cell_centre(box, x, y, z), &cone);
+            } else if (c->stale[nearest] & SDV__LISTED) {
+                cell->x = sdv__changed_distance(c, g->cells + nearest,
+                                                sdv_cell_centre(box, x, y, z), cell->x);
+            }
+        }
+    }
 }
 
+/* ---- all of it */
 /* The cones at the nodes, with their new ends. 0: no memory. */
 static int sdv__changed_cones(const sdv_tree *tree, const uint32_t *nodes, uint32_t count,
                               sdv__change *c) {
@@ -4126,64 +4631,122 @@ static int sdv__changed_cones(const sdv_tree *tree, const uint32_t *nodes, uint3
     const lao_allocator *a = &g->allocator;
     unsigned char *moved = (unsigned char *)sdv__take(a, tree->node_count, 1);
     uint32_t i, n = 0;
-    if (!moved) {
-        return 0;
+    c->is_changed = (unsigned char *)sdv__take(a, g->cone_count, 1);
+    if (moved && c->is_changed) {
+        memset(moved, 0, tree->node_count);
+        for (i = 0; i < count; i++) {
+            moved[nodes[i]] = 1;
+        }
+        for (i = 0; i < g->cone_count; i++) {
+            const uint32_t *ends = g->cone_nodes + 2 * (size_t)i;
+            c->is_changed[i] = moved[ends[0]] || moved[ends[1]];
+            c->changed_count += c->is_changed[i];
+        }
+        c->changed = (uint32_t *)sdv__take(a, c->changed_count, sizeof *c->changed);
+        c->cones = (lao_v4 *)sdv__take(a, 2 * (uint64_t)c->changed_count, sizeof *c->cones);
     }
-    memset(moved, 0, tree->node_count);
-    for (i = 0; i < count; i++) {
-        moved[nodes[i]] = 1;
-    }
-    for (i = 0; i < g->cone_count; i++) {
-        const uint32_t *ends = g->cone_nodes + 2 * (size_t)i;
-        c->changed_count += moved[ends[0]] || moved[ends[1]];
-    }
-    c->changed = (uint32_t *)sdv__take(a, c->changed_count, sizeof *c->changed);
-    c->cones = (lao_v4 *)sdv__take(a, 2 * (uint64_t)c->changed_count, sizeof *c->cones);
     for (i = 0; c->changed && c->cones && i < g->cone_count; i++) {
-        const uint32_t *ends = g->cone_nodes + 2 * (size_t)i;
-        if (moved[ends[0]] || moved[ends[1]]) {
+        if (c->is_changed[i]) {
             c->changed[n] = i;
-            sdv__cone_set(tree, ends, c->cones + 2 * (size_t)n++);
+            sdv__cone_set(tree, g->cone_nodes + 2 * (size_t)i, c->cones + 2 * (size_t)n++);
         }
     }
     sdv__give(a, moved);
     return c->changed && c->cones;
 }
-
-/* Everything up to the point where nothing can fail any more. */
+/* What marking has counted becomes where each layer begins. Returns the number of lists. */
+static uint32_t sdv__change_sizes(sdv__change *c) {
+    const sdv_grid *g = c->grid;
+    uint32_t z, lists = 0;
+    uint64_t fresh = 0;
+    for (z = 0; z <= g->size[2]; z++) {
+        uint32_t n = c->listed_in[z];
+        uint64_t m = c->fresh_in[z];
+        c->listed_in[z] = lists;
+        c->fresh_in[z] = fresh;
+        lists += n;
+        fresh += m;
+        if (z < g->size[2]) {
+            c->row_layer[z] = c->row_layers;
+            c->row_layers += c->turned[z];
+        }
+    }
+    return lists;
+}
+static int sdv__change_memory(sdv__change *c, uint32_t lists) {
+    const sdv_grid *g = c->grid;
+    const lao_allocator *a = &g->allocator;
+    uint64_t words = (uint64_t)sdv__words(g) * g->size[1] * g->size[2];
+    c->listed = (uint32_t *)sdv__take(a, 4 * (uint64_t)lists, sizeof *c->listed);
+    c->moves = (int32_t *)sdv__take(a, (uint64_t)lists + 1, sizeof *c->moves);
+    c->fresh = (float *)sdv__take(a, c->fresh_in[g->size[2]], sizeof *c->fresh);
+    c->rows =
+        (uint32_t *)sdv__take(a, c->row_layers * (uint64_t)sdv__layer_size(g), sizeof *c->rows);
+    c->was = (uint32_t *)sdv__take(a, words, sizeof *c->was);
+    if (!c->listed || !c->moves || !c->fresh || !c->rows || !c->was) {
+        return 0;
+    }
+    c->places = c->listed + lists;
+    c->olds = c->places + lists;
+    c->news = c->olds + lists;
+    memcpy(c->was, g->occupied, (size_t)words * sizeof *c->was);
+    return 1;
+}
+/* Everything up to the point where nothing can fail any more. *sum: entries of all lists. */
 static lao_result sdv__change_prepare(sdv__work *work, sdv__change *c, uint64_t *sum) {
     sdv_grid *g = c->grid;
     const lao_allocator *a = &g->allocator;
-    uint32_t z, layers = 0;
+    uint32_t k, lists;
+    for (k = 0; k < 3; k++) {
+        c->blocks[k] = sdv__parts(g->size[k], SDV__BLOCK);
+    }
     c->stale = (unsigned char *)sdv__take(a, g->cell_count, 1);
-    if (!c->stale) {
+    c->close =
+        (unsigned char *)sdv__take(a, (uint64_t)c->blocks[0] * c->blocks[1] * c->blocks[2], 1);
+    if (!c->stale || !c->close) {
         return sdv__fail(work->host, SDV_LOG_MEMORY, "changing a grid");
     }
     if (sdv__run(work, g->size[2], sdv__mark_layer, c)) {
         return sdv__fail(work->host, SDV_LOG_CANCELLED, "changing a grid");
     }
-    *sum = sdv__layer_starts(g, c->layer_ids);
-    for (z = 0; z < g->size[2]; z++) {
-        c->scratch_layer[z] = layers;
-        layers += c->touched[z];
+    lists = sdv__change_sizes(c);
+    if (!sdv__change_memory(c, lists)) {
+        return sdv__fail(work->host, SDV_LOG_MEMORY, "changing a grid");
     }
+    if (sdv__run(work, g->size[2], sdv__merge_layer, c)) {
+        return sdv__fail(work->host, SDV_LOG_CANCELLED, "changing a grid");
+    }
+    sdv__place_lists(c, lists);
+    *sum = (uint64_t)((int64_t)g->id_count + c->moves[lists]);
     if (*sum > SDV__EXACT) {
         return sdv__fail(work->host, SDV_LOG_GRID_LISTS, "%llu entries", (unsigned long long)*sum);
     }
-    c->ids = (float *)sdv__take(a, *sum, sizeof *c->ids);
-    c->scratch = (uint32_t *)sdv__take(a, layers * (uint64_t)sdv__layer_size(g), sizeof(uint32_t));
-    return c->ids && c->scratch ? LAO_OK : sdv__fail(work->host, SDV_LOG_MEMORY, "changing a grid");
+    if (*sum > g->id_room) { /* and some more, for the changes to come */
+        c->room = (uint32_t)(*sum + *sum / 8);
+        c->ids = (float *)sdv__take(a, c->room, sizeof *c->ids);
+        if (!c->ids) {
+            return sdv__fail(work->host, SDV_LOG_MEMORY, "changing a grid");
+        }
+    }
+    return LAO_OK;
 }
 static void sdv__change_apply(sdv__work *work, sdv__change *c) {
     sdv_grid *g = c->grid;
-    float *old = g->ids;
     uint32_t k;
+    (void)sdv__run(work, c->blocks[2], sdv__close_blocks, c);
+    if (c->ids) {
+        float *old = g->ids;
+        memcpy(c->ids, old, g->id_count * sizeof *old);
+        g->ids = c->ids;
+        g->id_room = c->room;
+        c->ids = old;
+    }
+    sdv__move_lists(c, c->listed_in[g->size[2]]);
     (void)sdv__run(work, g->size[2], sdv__relist_layer, c);
-    g->ids = c->ids;
-    c->ids = old;
-    for (k = 0; k < c->changed_count; k++) {
-        memcpy(g->cones + 2 * (size_t)c->changed[k], c->cones + 2 * (size_t)k,
-               2 * sizeof *g->cones);
+    for (k = 0; k < 2 * c->changed_count; k++) {
+        lao_v4 *end = g->cones + 2 * (size_t)c->changed[k / 2] + k % 2, old = *end;
+        *end = c->cones[k];
+        c->cones[k] = old;
     }
     (void)sdv__run(work, g->size[2], sdv__renear_layer, c);
     (void)sdv__run(work, g->size[1], sdv__renear_slab, c);
@@ -4200,7 +4763,8 @@ static lao_result sdv__grid_change(const sdv_host *host, const sdv_tree *tree,
     c.grid = grid;
     work.host = host;
     work.done = 0;
-    work.total = 4 * (uint64_t)grid->size[2] + grid->size[1];
+    work.total =
+        5 * (uint64_t)grid->size[2] + grid->size[1] + sdv__parts(grid->size[2], SDV__BLOCK);
     if (sdv__changed_cones(tree, nodes, count, &c)) {
         result = sdv__change_prepare(&work, &c, &sum);
     } else {
@@ -4218,8 +4782,14 @@ static lao_result sdv__grid_change(const sdv_host *host, const sdv_tree *tree,
     }
     sdv__give(&grid->allocator, c.changed);
     sdv__give(&grid->allocator, c.cones);
+    sdv__give(&grid->allocator, c.is_changed);
     sdv__give(&grid->allocator, c.stale);
-    sdv__give(&grid->allocator, c.scratch);
+    sdv__give(&grid->allocator, c.close);
+    sdv__give(&grid->allocator, c.listed);
+    sdv__give(&grid->allocator, c.moves);
+    sdv__give(&grid->allocator, c.fresh);
+    sdv__give(&grid->allocator, c.rows);
+    sdv__give(&grid->allocator, c.was);
     sdv__give(&grid->allocator, c.ids);
     return result;
 }
@@ -4365,15 +4935,18 @@ static sdv_march sdv__least(const sdv_grid *g, const sdv_ray *ray, sdv_march m) 
 /* On to the surface from a point close to it. */
 static void sdv__land(const sdv_grid *g, const sdv_ray *ray, const sdv_march *m, sdv_hit *hit) {
     lao_v3 gradient = lao_v3_make(0.0f, 0.0f, 1.0f);
-    float t = m->t;
+    float t = m->t, off = SDV_FAR;
     int i;
     for (i = 0; i <= SDV_POLISH_ROUNDS; i++) {
-        const lao_v4 *ends;
-        sdv_near n;
-        hit->position = lao_v3_along(ray->origin, ray->direction, t);
-        n = sdv__near_at(g, sdv__cell_at(g, hit->position), hit->position, ray->direction);
-        ends = g->cones + 2 * (size_t)n.cone;
-        gradient = sdv_round_cone_gradient(hit->position, ends[0], ends[1]);
+        lao_v3 p = lao_v3_along(ray->origin, ray->direction, t);
+        sdv_near n = sdv__near_at(g, sdv__cell_at(g, p), p, ray->direction);
+        const lao_v4 *ends = g->cones + 2 * (size_t)n.cone;
+        if (lao_abs(n.distance) > off) {
+            break;
+        }
+        off = lao_abs(n.distance);
+        gradient = sdv_round_cone_gradient(p, ends[0], ends[1]);
+        hit->position = p;
         hit->cone = (uint32_t)n.cone;
         hit->t = t;
         t = sdv_polish(t, n.distance, gradient, ray->direction, g->cell);
@@ -4480,14 +5053,18 @@ static lao_v3 sdv__solid_gradient(const sdv_grid *g, const sdv_shapes *shapes, c
 }
 static void sdv__solid_land(const sdv_grid *g, const sdv_shapes *shapes, const sdv_ray *ray,
                             float t, sdv_hit *hit, uint32_t *shape) {
-    lao_v3 gradient;
+    float off = SDV_FAR;
     int i;
     for (i = 0; i <= SDV_POLISH_ROUNDS; i++) {
         uint32_t cone = 0;
-        sdv_solid s;
-        hit->position = lao_v3_along(ray->origin, ray->direction, t);
-        s = sdv__solid_at(g, shapes, hit->position, &cone);
-        gradient = sdv__solid_gradient(g, shapes, &s, hit->position, cone);
+        lao_v3 p = lao_v3_along(ray->origin, ray->direction, t), gradient;
+        sdv_solid s = sdv__solid_at(g, shapes, p, &cone);
+        if (lao_abs(s.distance) > off) {
+            break;
+        }
+        off = lao_abs(s.distance);
+        gradient = sdv__solid_gradient(g, shapes, &s, p, cone);
+        hit->position = p;
         hit->cone = s.part >= 0 ? SDV_CUT_CONE : cone;
         hit->normal = hit->inside ? lao_v3_scale(gradient, -1.0f) : gradient;
         hit->t = t;
@@ -4614,14 +5191,15 @@ SDV_API lao_v3 sdv_smooth_normal(const sdv_grid *grid, lao_v3 p, uint32_t cone, 
     }
     return sdv_joint_normal(sum, normal);
 }
-SDV_API float sdv_openness(const sdv_grid *grid, lao_v3 p, lao_v3 normal, float reach,
-                           uint32_t inside) {
+SDV_API float sdv_openness(const sdv_grid *grid, const sdv_shapes *shapes, lao_v3 p, lao_v3 normal,
+                           float reach, uint32_t inside) {
     float closed = 0.0f;
     lao_int i;
     for (i = 0; i < SDV_OPEN_SAMPLES && reach > 0.0f; i++) {
         float place = sdv_open_place(reach, i);
         lao_v3 q = lao_v3_along(p, normal, place);
         float d = sdv_grid_distance(grid, q, NULL);
+        d = shapes ? sdv__solid_of(shapes, d, q, false).distance : d;
         closed = sdv_open_add(closed, inside ? -d : d, place, i);
     }
     return sdv_open_result(closed);
@@ -4686,10 +5264,10 @@ static uint32_t sdv__spread(uint32_t v) { /* 10 bits, two free ones between */
     return (v | v << 2) & 0x09249249u;
 }
 static uint32_t sdv__morton(const sdv__piece *s, const double low[3], double size) {
-    const float *u = &s->u.x, *v = &s->v.x, *w = &s->w.x;
     uint32_t key = 0, k;
     for (k = 0; k < 3; k++) {
-        double c = ((double)u[k] + (double)v[k] + (double)w[k]) / 3 - low[k];
+        double u = (double)sdv__v3_at(s->u, k), v = (double)sdv__v3_at(s->v, k);
+        double c = (u + v + (double)sdv__v3_at(s->w, k)) / 3 - low[k];
         double cell = size > 0 ? c / size * 1023 : 0;
         key |= sdv__spread(cell > 0 ? (cell < 1023 ? (uint32_t)cell : 1023u) : 0u) << k;
     }
@@ -4940,10 +5518,9 @@ static lao_v4 sdv__channels(const sdv__level *l, size_t texel, uint32_t channels
 }
 static void sdv__channels_set(const sdv__level *l, size_t texel, uint32_t channels, uint32_t c,
                               lao_v4 value) {
-    const float *v = &value.x;
     uint32_t k;
     for (k = 0; k < 4 && c + k < channels; k++) {
-        l->values[texel * channels + c + k] = v[k];
+        l->values[texel * channels + c + k] = sdv__v4_at(value, k);
     }
 }
 static void sdv__pull_texel(const sdv__pull *p, uint32_t x, uint32_t y) {
@@ -5119,6 +5696,7 @@ SDV_API lao_result sdv_pull_push(const sdv_host *host, const sdv_pull_push_desc 
 #define SDV__TREE {"#vessel_cones", '>', 0}, {"#vessel_shapes", '=', 0}
 #define SDV__SHAPES {"#vessel_cones", '>', 0}, {"#vessel_shapes", '>', 0}
 #define SDV__SEEN {"#vessel_box", '>', 0}, {"#vessel_cones", '=', 0}
+#define SDV__DRAWN {SDV__SEEN, {"#vessel_triangles", '=', 0}}
 #define SDV__WITH_TREE {SDV__TREE}
 #define SDV__WITH_SHAPES {SDV__SHAPES}
 /* sdv_object_make_tree: the object has no cells of its own */
@@ -5161,6 +5739,7 @@ static const lao_image_row sdv__images[] = {
     {"vessel_ray",      LAO_FORMAT_RGBA32F, LAO_SIZE_FULL, 0, 0, NULL, 0, LAO_ENCODING_PLAIN, {0, 0, 0, 0},  {NULL, 0, 0}, {NULL, NULL, NULL, NULL}},
     {"vessel_color",    LAO_FORMAT_RGBA8,   LAO_SIZE_FULL, 0, 0, NULL, 0, LAO_ENCODING_PLAIN, {0, 0, 0, 0},  {NULL, 0, 0}, {NULL, NULL, NULL, NULL}},
     {"vessel_direction", LAO_FORMAT_RGBA32F, LAO_SIZE_FULL, 0, 0, NULL, 0, LAO_ENCODING_PLAIN, {0, 0, 0, 0}, {"guide", '>', 0}, {NULL, NULL, NULL, NULL}},
+    {"vessel_drawn_depth", LAO_FORMAT_HOST, LAO_SIZE_FULL, 0, 0, NULL, LAO_IMAGE_IMPORT, LAO_ENCODING_PLAIN, {0, 0, 0, 0}, {NULL, 0, 0}, {NULL, NULL, NULL, NULL}},
     {"vessel_z",        LAO_FORMAT_D32F,    LAO_SIZE_FULL, 0, 0, NULL, 0, LAO_ENCODING_PLAIN, {1, 0, 0, 0},  {NULL, 0, 0}, {NULL, NULL, NULL, NULL}},
     /* where there is a parameterization: of pyramids, levels down to one texel; what each holds stands in its shader */
     {"vessel_depth", LAO_FORMAT_RGBA32F, LAO_SIZE_FULL, 0, 0, "*", 0, LAO_ENCODING_PLAIN, {0, 0, 0, 0}, SDV__BACKGROUND, {NULL, NULL, NULL, NULL}},
@@ -5247,6 +5826,16 @@ static const lao_pass_row sdv__passes[] = {
     {"vessel_mesh", LAO_PASS_DRAW_MESH, "vessel_mesh", 0, LAO_STAGE_DRAW, LAO_SCOPE_PER_SET, LAO_REPEAT_NONE, NULL, LAO_BLEND_NONE, LAO_DEPTH_NEARER, LAO_CULL_NONE, {{"#vessel_triangles", '>', 0}},
      {SDV__CLEAR("vessel_position"), SDV__CLEAR("vessel_normal"), SDV__CLEAR("vessel_color"), SDV__CLEAR("vessel_direction"), SDV__CLEAR("vessel_z")},
      {SDV__READ("#vessel_vertices"), SDV__READ("#vessel_triangles"), SDV__READ("#vessel_colors")}},
+    /* of a surface that the host drew what it does not bring itself */
+    {"vessel_drawn_place", LAO_PASS_FULLSCREEN, "vessel_drawn", 0, LAO_STAGE_DRAW, LAO_SCOPE_PER_SET, LAO_REPEAT_NONE, NULL, LAO_BLEND_NONE, LAO_DEPTH_NONE, LAO_CULL_NONE, SDV__DRAWN,
+     {SDV__WRITE("vessel_position")},
+     {SDV__READ("vessel_drawn_depth")}},
+    {"vessel_drawn_normal", LAO_PASS_FULLSCREEN, "vessel_drawn", 1, LAO_STAGE_DRAW, LAO_SCOPE_PER_SET, LAO_REPEAT_NONE, NULL, LAO_BLEND_NONE, LAO_DEPTH_NONE, LAO_CULL_NONE, SDV__DRAWN,
+     {SDV__WRITE("vessel_normal")},
+     {SDV__READ("vessel_position")}},
+    {"vessel_drawn_color", LAO_PASS_FULLSCREEN, "vessel_drawn", 2, LAO_STAGE_DRAW, LAO_SCOPE_PER_SET, LAO_REPEAT_NONE, NULL, LAO_BLEND_NONE, LAO_DEPTH_NONE, LAO_CULL_NONE, SDV__DRAWN,
+     {SDV__WRITE("vessel_color")},
+     {SDV__READ("vessel_position")}},
     /* the void: depth pulled up and pushed down, then a place and a normal for every pixel (L19 3.4) */
     {"vessel_depth", LAO_PASS_FULLSCREEN, "vessel_depth", 0, LAO_STAGE_SHADE, LAO_SCOPE_PER_SET, LAO_REPEAT_NONE, NULL, LAO_BLEND_NONE, LAO_DEPTH_NONE, LAO_CULL_NONE, SDV__WITH_BACKGROUND,
      {SDV__WRITE("vessel_depth")},
@@ -5301,25 +5890,22 @@ static const lao_pass_row sdv__passes[] = {
     /* strokes and dots, where phases changed faded over */
     {"vessel_ink", LAO_PASS_FULLSCREEN, "vessel_ink", 0, LAO_STAGE_SHADE, LAO_SCOPE_PER_SET, LAO_REPEAT_NONE, NULL, LAO_BLEND_NONE, LAO_DEPTH_NONE, LAO_CULL_NONE, {SDV__TREE, SDV__PARAMETERIZED},
      {SDV__WRITE("vessel_ink")},
-     {SDV__READ("vessel_position"), SDV__READ("vessel_normal"), SDV__READ("vessel_ray"),
+     {SDV__READ("vessel_surface"), SDV__READ("vessel_bgnormal"), SDV__READ("vessel_normal"), SDV__READ("vessel_ray"),
       SDV__READ("#vessel_box"), SDV__READ("#vessel_cells"), SDV__READ("#vessel_ids"), SDV__READ("#vessel_cones"),
-      SDV__READ("#vessel_shapes"), SDV__READ("#vessel_fields"), SDV__READ("vessel_uv"), SDV__READ("vessel_surface"),
-      SDV__READ("vessel_bgnormal"), SDV__READ("vessel_along"), SDV__READ("vessel_across"), SDV__READ("vessel_recalled"), SDV__READ("#vessel_pattern"), SDV__READ("#vessel_colors"),
-      SDV__READ("vessel_grid"), SDV__READ("vessel_lists")}},
+      SDV__READ("#vessel_shapes"), SDV__READ("#vessel_fields"), SDV__READ("vessel_uv"), SDV__READ("vessel_recalled"),
+      SDV__READ("#vessel_pattern"), SDV__READ("#vessel_colors"), SDV__READ("vessel_grid"), SDV__READ("vessel_lists")}},
     {"vessel_ink_cut", LAO_PASS_FULLSCREEN, "vessel_ink", 1, LAO_STAGE_SHADE, LAO_SCOPE_PER_SET, LAO_REPEAT_NONE, NULL, LAO_BLEND_NONE, LAO_DEPTH_NONE, LAO_CULL_NONE, {SDV__SHAPES, SDV__PARAMETERIZED},
      {SDV__WRITE("vessel_ink")},
-     {SDV__READ("vessel_position"), SDV__READ("vessel_normal"), SDV__READ("vessel_ray"),
+     {SDV__READ("vessel_surface"), SDV__READ("vessel_bgnormal"), SDV__READ("vessel_normal"), SDV__READ("vessel_ray"),
       SDV__READ("#vessel_box"), SDV__READ("#vessel_cells"), SDV__READ("#vessel_ids"), SDV__READ("#vessel_cones"),
-      SDV__READ("#vessel_shapes"), SDV__READ("#vessel_fields"), SDV__READ("vessel_uv"), SDV__READ("vessel_surface"),
-      SDV__READ("vessel_bgnormal"), SDV__READ("vessel_along"), SDV__READ("vessel_across"), SDV__READ("vessel_recalled"), SDV__READ("#vessel_pattern"), SDV__READ("#vessel_colors"),
-      SDV__READ("vessel_grid"), SDV__READ("vessel_lists")}},
+      SDV__READ("#vessel_shapes"), SDV__READ("#vessel_fields"), SDV__READ("vessel_uv"), SDV__READ("vessel_recalled"),
+      SDV__READ("#vessel_pattern"), SDV__READ("#vessel_colors"), SDV__READ("vessel_grid"), SDV__READ("vessel_lists")}},
     {"vessel_ink_seen", LAO_PASS_FULLSCREEN, "vessel_ink", 2, LAO_STAGE_SHADE, LAO_SCOPE_PER_SET, LAO_REPEAT_NONE, NULL, LAO_BLEND_NONE, LAO_DEPTH_NONE, LAO_CULL_NONE, {SDV__SEEN, SDV__PARAMETERIZED},
      {SDV__WRITE("vessel_ink")},
-     {SDV__READ("vessel_position"), SDV__READ("vessel_normal"), SDV__READ("vessel_normal"),
+     {SDV__READ("vessel_surface"), SDV__READ("vessel_bgnormal"), SDV__READ("vessel_normal"), SDV__READ("vessel_normal"),
       SDV__READ("#vessel_box"), SDV__READ("#vessel_cells"), SDV__READ("#vessel_ids"), SDV__READ("#vessel_cones"),
-      SDV__READ("#vessel_shapes"), SDV__READ("#vessel_fields"), SDV__READ("vessel_uv"), SDV__READ("vessel_surface"),
-      SDV__READ("vessel_bgnormal"), SDV__READ("vessel_along"), SDV__READ("vessel_across"), SDV__READ("vessel_recalled"), SDV__READ("#vessel_pattern"), SDV__READ("#vessel_colors"),
-      SDV__READ("vessel_normal"), SDV__READ("vessel_normal")}},
+      SDV__READ("#vessel_shapes"), SDV__READ("#vessel_fields"), SDV__READ("vessel_uv"), SDV__READ("vessel_recalled"),
+      SDV__READ("#vessel_pattern"), SDV__READ("#vessel_colors"), SDV__READ("vessel_normal"), SDV__READ("vessel_normal")}},
     {"vessel_shade", LAO_PASS_FULLSCREEN, "vessel_shade", 0, LAO_STAGE_SHADE, LAO_SCOPE_PER_SET, LAO_REPEAT_NONE, NULL, LAO_BLEND_NONE, LAO_DEPTH_NEARER, LAO_CULL_NONE, SDV__WITH_TREE,
      {SDV__KEEP("shaded"), SDV__KEEP("zbuffer")},
      {SDV__READ("vessel_position"), SDV__READ("vessel_normal"), SDV__READ("vessel_ray"), SDV__READ("#vessel_colors"),
@@ -5344,7 +5930,6 @@ static const lao_setting_row sdv__settings[] = {
 #define SDV__ROW(name, type, minimum, maximum, standard, structural, unit, choices, help) \
     {#name, LAO_SETTING_##type, minimum, maximum, standard, structural, unit, choices, help},
     SDV_SETTINGS(SDV__ROW)
-#undef SDV__ROW
 };
 
 static const lao_module sdv__module = {
@@ -5357,15 +5942,61 @@ static const lao_module sdv__module = {
 };
 // clang-format on
 
+/* ---- pull-push of a host's image */
+// clang-format off
+#define SDV__OF_HOST {"@pull_push_image", '>', 0}
+static const lao_image_row sdv__pull_push_images[] = {
+    {"pull_push_image",  LAO_FORMAT_HOST,    LAO_SIZE_VIEW, 0, 0, NULL, LAO_IMAGE_IMPORT, LAO_ENCODING_PLAIN, {0, 0, 0, 0}, {NULL, 0, 0}, {NULL, NULL, NULL, NULL}},
+    {"pull_push_result", LAO_FORMAT_HOST,    LAO_SIZE_VIEW, 0, 0, NULL, LAO_IMAGE_IMPORT, LAO_ENCODING_PLAIN, {0, 0, 0, 0}, {NULL, 0, 0}, {NULL, NULL, NULL, NULL}},
+    {"pull_push_level",  LAO_FORMAT_RGBA32F, LAO_SIZE_VIEW, 0, 0, "*",  0,                LAO_ENCODING_PLAIN, {0, 0, 0, 0}, {NULL, 0, 0}, {NULL, NULL, NULL, NULL}},
+    {"pull_push_filled", LAO_FORMAT_RGBA32F, LAO_SIZE_VIEW, 0, 0, "*",  0,                LAO_ENCODING_PLAIN, {0, 0, 0, 0}, {NULL, 0, 0}, {NULL, NULL, NULL, NULL}}
+};
+static const lao_pass_row sdv__pull_push_passes[] = {
+    {"pull_push_start", LAO_PASS_FULLSCREEN, "vessel_push", 2, LAO_STAGE_DRAW, LAO_SCOPE_FRAME, LAO_REPEAT_NONE, NULL, LAO_BLEND_NONE, LAO_DEPTH_NONE, LAO_CULL_NONE, {SDV__OF_HOST},
+     {SDV__WRITE("pull_push_level")},
+     {SDV__READ("pull_push_image"), SDV__READ("pull_push_image")}},
+    {"pull_push_mean", LAO_PASS_FULLSCREEN, "vessel_pull", SDV_PULL_MEAN, LAO_STAGE_DRAW, LAO_SCOPE_FRAME, LAO_REPEAT_LEVELS_UP, NULL, LAO_BLEND_NONE, LAO_DEPTH_NONE, LAO_CULL_NONE, {SDV__OF_HOST, {"pull", '=', SDV_PULL_MEAN}},
+     {SDV__WRITE("pull_push_level")},
+     {SDV__FINER("pull_push_level")}},
+    {"pull_push_sum", LAO_PASS_FULLSCREEN, "vessel_pull", SDV_PULL_SUM, LAO_STAGE_DRAW, LAO_SCOPE_FRAME, LAO_REPEAT_LEVELS_UP, NULL, LAO_BLEND_NONE, LAO_DEPTH_NONE, LAO_CULL_NONE, {SDV__OF_HOST, {"pull", '=', SDV_PULL_SUM}},
+     {SDV__WRITE("pull_push_level")},
+     {SDV__FINER("pull_push_level")}},
+    {"pull_push_top", LAO_PASS_FULLSCREEN, "vessel_push", 1, LAO_STAGE_DRAW, LAO_SCOPE_FRAME, LAO_REPEAT_NONE, NULL, LAO_BLEND_NONE, LAO_DEPTH_NONE, LAO_CULL_NONE, {SDV__OF_HOST},
+     {SDV__TOP("pull_push_filled")},
+     {SDV__TOP("pull_push_level"), SDV__TOP("pull_push_level")}},
+    {"pull_push_down", LAO_PASS_FULLSCREEN, "vessel_push", 0, LAO_STAGE_DRAW, LAO_SCOPE_FRAME, LAO_REPEAT_LEVELS_DOWN, NULL, LAO_BLEND_NONE, LAO_DEPTH_NONE, LAO_CULL_NONE, {SDV__OF_HOST},
+     {SDV__WRITE("pull_push_filled")},
+     {SDV__READ("pull_push_level"), SDV__COARSER("pull_push_filled")}},
+    {"pull_push_result", LAO_PASS_FULLSCREEN, "vessel_push", 2, LAO_STAGE_DRAW, LAO_SCOPE_FRAME, LAO_REPEAT_NONE, NULL, LAO_BLEND_NONE, LAO_DEPTH_NONE, LAO_CULL_NONE, {SDV__OF_HOST, {"@pull_push_result", '>', 0}},
+     {SDV__WRITE("pull_push_result")},
+     {SDV__READ("pull_push_filled"), SDV__READ("pull_push_filled")}}
+};
+static const lao_setting_row sdv__pull_push_settings[] = {
+    SDV_PULL_PUSH_SETTINGS(SDV__ROW)
+};
+#undef SDV__ROW
+static const lao_module sdv__pull_push_module = {
+    "pull_push",
+    sdv__pull_push_passes, (uint32_t)(sizeof sdv__pull_push_passes / sizeof sdv__pull_push_passes[0]),
+    sdv__pull_push_images, (uint32_t)(sizeof sdv__pull_push_images / sizeof sdv__pull_push_images[0]),
+    sdv__pull_push_settings, (uint32_t)(sizeof sdv__pull_push_settings / sizeof sdv__pull_push_settings[0]),
+    NULL, 0, NULL, 0, NULL, 0
+};
+// clang-format on
+
+SDV_API const lao_module *sdv_pull_push_module(void) {
+    return &sdv__pull_push_module;
+}
+
 SDV_API void sdv_camera_margin(const lao_camera *camera, uint32_t width, uint32_t height,
                                uint32_t margin, lao_camera *wider) {
     double x = (double)width / ((double)width + 2.0 * margin);
     double y = (double)height / ((double)height + 2.0 * margin);
-    int column;
+    size_t column;
     *wider = *camera;
-    for (column = 0; column < 4; column++) {
-        wider->projection[4 * column] = (float)(x * (double)camera->projection[4 * column]);
-        wider->projection[4 * column + 1] = (float)(y * (double)camera->projection[4 * column + 1]);
+    for (column = 0; column < 16; column += 4) {
+        wider->projection[column] = (float)(x * (double)camera->projection[column]);
+        wider->projection[column + 1] = (float)(y * (double)camera->projection[column + 1]);
     }
 }
 
@@ -5468,7 +6099,7 @@ static double sdv__blocks(const sdv_grid *g, uint32_t edge) {
     double n = 1;
     uint32_t k;
     for (k = 0; k < 3; k++) {
-        n *= (double)((g->size[k] + edge - 1) / edge);
+        n *= (double)sdv__parts(g->size[k], edge);
     }
     return n;
 }
@@ -5492,18 +6123,19 @@ static double sdv__most_cells(const sdv_grid *g, const lao_v4 *cone) {
 /* Most blocks of so many cells that list it: those whose middles are in its box with their reach
    around it. The last along an axis may be smaller, and its middle lower. */
 static double sdv__most_blocks(const sdv_grid *g, const lao_v4 *cone, uint32_t edge) {
-    const float *a = &cone[0].x, *b = &cone[1].x, *origin = &g->origin.x;
     lao_v3 last = lao_v3_make(1, 1, 1);
     double blocks = 1, size = (double)edge * (double)g->cell, reach;
     uint32_t k;
     last = lao_v3_scale(last, (float)(edge - 1));
     reach = 1.01 * (double)sdv_block_reach(sdv__grid_box(g), lao_v3_make(0, 0, 0), last).w;
     for (k = 0; k < 3; k++) {
-        double n = (double)((g->size[k] + edge - 1) / edge);
-        double low = (double)lao_min(a[k] - cone[0].w, b[k] - cone[1].w) - reach;
-        double high = (double)lao_max(a[k] + cone[0].w, b[k] + cone[1].w) + reach;
-        low = ceil((low - (double)origin[k]) / size - 0.5);
-        high = floor((high - (double)origin[k]) / size - 0.5);
+        double n = (double)sdv__parts(g->size[k], edge);
+        float a = sdv__v4_at(cone[0], k), b = sdv__v4_at(cone[1], k);
+        double origin = (double)sdv__v3_at(g->origin, k);
+        double low = (double)lao_min(a - cone[0].w, b - cone[1].w) - reach;
+        double high = (double)lao_max(a + cone[0].w, b + cone[1].w) + reach;
+        low = ceil((low - origin) / size - 0.5);
+        high = floor((high - origin) / size - 0.5);
         low = low > 0 ? low : 0;
         high = high >= n - 2 ? n - 1 : high;
         blocks *= high >= low ? high - low + 1 : 0;
@@ -5637,6 +6269,104 @@ SDV_API lao_result sdv_object_make_tree(const sdv_host *host, const sdv_tree *tr
     return result;
 }
 
+/* ---- the vessel that is nearest, however far */
+/* Cones in the order of their middles, SDV_LEAF_CONES a leaf, under balls around what is below
+   (see the shared text). */
+static void sdv__nearest_order(const lao_v4 *cones, uint32_t count, uint32_t *keys) {
+    double low[3], high[3], size = 0;
+    uint32_t i, k;
+    sdv__ball_bounds(cones, 2 * count, low, high);
+    for (k = 0; k < 3; k++) {
+        size = high[k] - low[k] > size ? high[k] - low[k] : size;
+    }
+    for (i = 0; i < count; i++) {
+        const lao_v4 *c = cones + 2 * (size_t)i;
+        lao_v3 a = lao_v3_make(c[0].x, c[0].y, c[0].z), b = lao_v3_make(c[1].x, c[1].y, c[1].z);
+        sdv__piece s;
+        s.u = a;
+        s.v = b;
+        s.w = lao_v3_along(a, lao_v3_sub(b, a), 0.5f);
+        keys[i] = sdv__morton(&s, low, size);
+    }
+    sdv__sort(keys, count, keys + count, keys + 2 * (size_t)count);
+}
+static lao_v4 sdv__nearest_ball(const lao_v4 *cones, const uint32_t *order, uint32_t first,
+                                uint32_t end) {
+    lao_v3 low = lao_v3_make(SDV_FAR, SDV_FAR, SDV_FAR), high = lao_v3_scale(low, -1.0f);
+    uint32_t i, k;
+    for (i = first; i < end; i++) {
+        for (k = 0; k < 2; k++) {
+            lao_v4 c = cones[2 * (size_t)order[i] + k];
+            sdv__box_grow(&low, &high, lao_v3_make(c.x - c.w, c.y - c.w, c.z - c.w));
+            sdv__box_grow(&low, &high, lao_v3_make(c.x + c.w, c.y + c.w, c.z + c.w));
+        }
+    }
+    return first < end ? sdv__box_ball(&low, &high) : lao_v4_make(0.0f, 0.0f, 0.0f, -SDV_FAR);
+}
+static void sdv__nearest_fill(const lao_v4 *cones, uint32_t count, const uint32_t *order,
+                              uint32_t leaves, lao_v4 *balls) {
+    uint32_t node, i, wide = leaves * SDV_LEAF_CONES; /* cones below a node */
+    balls[0] = lao_v4_make(0.0f, 0.0f, 0.0f, 0.0f);
+    for (node = 1; node < 2 * leaves; node++) {
+        uint32_t first, end;
+        wide /= node > 1 && (node & (node - 1)) == 0 ? 2u : 1u; /* the first of its level */
+        first = node * wide - leaves * SDV_LEAF_CONES;
+        end = first + wide < count ? first + wide : count;
+        balls[node] = sdv__nearest_ball(cones, order, first, end);
+    }
+    for (i = 0; i < leaves; i++) {
+        float id[SDV_LEAF_CONES];
+        uint32_t k;
+        for (k = 0; k < SDV_LEAF_CONES; k++) {
+            uint32_t at = i * SDV_LEAF_CONES + k;
+            id[k] = at < count ? (float)order[at] : -1.0f;
+        }
+        balls[2 * (size_t)leaves + i] = lao_v4_make(id[0], id[1], id[2], id[3]);
+    }
+}
+/* The buffer of the shapes, which are in object->shapes: with the hierarchy behind them where one
+   takes the colour of the nearest vessel. */
+static lao_result sdv__object_nearest(const sdv_host *host, sdv_object *object) {
+    const lao_allocator *a = &object->allocator;
+    const lao_v4 *cones = NULL;
+    uint32_t i, wanted = 0, leaves = 1, count = 0, *keys;
+    uint32_t shapes = (uint32_t)object->shapes[0].x, first = 1 + 4 * shapes;
+    lao_v4 *texels;
+    for (i = 0; i < shapes; i++) {
+        wanted |= object->shapes[4 + 4 * (size_t)i].w < 0.5f;
+    }
+    for (i = 0; i < object->desc.buffer_count; i++) {
+        if (strcmp(object->buffers[i].name, "vessel_cones") == 0) {
+            cones = (const lao_v4 *)object->buffers[i].data;
+            count = object->buffers[i].texel_count / 2;
+        }
+    }
+    if (!wanted || !cones) {
+        object->shapes[0].w = 0.0f;
+        sdv__object_buffer(object, "vessel_shapes", object->shapes, first);
+        return LAO_OK;
+    }
+    for (; leaves * SDV_LEAF_CONES < count; leaves *= 2) {
+    }
+    texels = (lao_v4 *)sdv__take(a, first + 3 * (uint64_t)leaves, sizeof *texels);
+    keys = (uint32_t *)sdv__take(a, 3 * (uint64_t)count, sizeof *keys); /* and order, other */
+    if (texels && keys) {
+        object->shapes[0].z = (float)first;
+        object->shapes[0].w = (float)leaves;
+        memcpy(texels, object->shapes, first * sizeof *texels);
+        sdv__nearest_order(cones, count, keys);
+        sdv__nearest_fill(cones, count, keys + count, leaves, texels + first);
+        sdv__give(a, object->nearest);
+        object->nearest = texels;
+        sdv__object_buffer(object, "vessel_shapes", texels, first + 3 * leaves);
+        sdv__give(a, keys);
+        return LAO_OK;
+    }
+    sdv__give(a, texels);
+    sdv__give(a, keys);
+    return sdv__fail(host, SDV_LOG_MEMORY, "the nearest of %u vessels", count);
+}
+
 /* The cones of the tree as it is now, and a new box where it has left the old one. */
 static lao_result sdv__object_renew(const sdv_host *host, const sdv_tree *tree,
                                     sdv_object *object) {
@@ -5679,16 +6409,16 @@ SDV_API lao_result sdv_object_move(const sdv_host *host, const sdv_tree *tree,
     }
     if (result == LAO_OK) {
         sdv__object_grid(object, &object->grid);
+        result = object->nearest ? sdv__object_nearest(host, object) : LAO_OK;
     }
     return result;
 }
 
 static bool sdv__shape_fits(const sdv_shape *s, uint32_t field_count) {
-    const float *v = &s->a.x, *w = &s->b.x;
     double size = (double)s->b.x * (double)s->b.y * (double)s->b.z;
-    int i;
+    uint32_t i;
     for (i = 0; i < 4; i++) {
-        if (!(fabsf(v[i]) <= 1e9f && fabsf(w[i]) <= 1e9f)) {
+        if (!(fabsf(sdv__v4_at(s->a, i)) <= 1e9f && fabsf(sdv__v4_at(s->b, i)) <= 1e9f)) {
             return false;
         }
     }
@@ -5722,7 +6452,7 @@ SDV_API lao_result sdv_object_shapes(const sdv_host *host, const sdv_shapes *sha
         lao_v4_make((float)shapes->count, sdv__united(shapes) ? 1.0f : 0.0f, 0.0f, 0.0f);
     for (i = 0; i < shapes->count; i++) {
         const sdv_shape *s = &shapes->shapes[i];
-        lao_v4 *to = object->shapes + 1 + 4 * i;
+        lao_v4 *to = object->shapes + 1 + 4 * (size_t)i;
         to[0] = s->a;
         to[1] = s->b;
         to[2] = lao_v4_make((float)s->kind, (float)s->operation, 0.0f, 0.0f);
@@ -5732,13 +6462,12 @@ SDV_API lao_result sdv_object_shapes(const sdv_host *host, const sdv_shapes *sha
             to[3] = lao_v4_make(c[0], c[1], c[2], c[0] < 0.0f ? 0.0f : 1.0f);
         }
     }
-    sdv__object_buffer(object, "vessel_shapes", object->shapes, 1 + 4 * shapes->count);
     if (shapes->field_count) {
         sdv__object_buffer(object, "vessel_fields", shapes->fields, shapes->field_count);
     } else {
         sdv__object_drop(object, "vessel_fields");
     }
-    return LAO_OK;
+    return sdv__object_nearest(host, object);
 }
 
 /* Fills the buffers of a mesh, which stand one behind the other in `memory`: three texels a vertex,
@@ -5875,6 +6604,7 @@ SDV_API lao_result sdv_object_pattern(const sdv_host *host, const float *values,
 SDV_API void sdv_object_free(sdv_object *object) {
     if (object && object->allocator.release) {
         sdv__give(&object->allocator, object->pattern);
+        sdv__give(&object->allocator, object->nearest);
         sdv__give(&object->allocator, object->memory);
         sdv_grid_free(&object->grid);
         memset(object, 0, sizeof *object);

@@ -72,8 +72,8 @@ extern "C" {
     X(MESH_EMPTY, LAO_ERROR_INVALID_ARGUMENT, "the mesh has no triangle with an area")             \
     X(MESH_ATTRIBUTE, LAO_ERROR_INVALID_ARGUMENT, "an attribute has no name or no values")         \
     X(MESH_DEVICE, LAO_ERROR_UNSUPPORTED,                                                          \
-      "the mesh is too large for the device; decimate it, extract it on a coarser grid or "        \
-      "subdivide it less")                                                                         \
+      "the mesh is too large for the device; decimate it (vsf_mesh_decimate), extract it on a "    \
+      "coarser grid or subdivide it less")                                                         \
     X(SETTING, LAO_ERROR_INVALID_ARGUMENT, "a setting is out of its range or no number")           \
     X(LINES_OFFSETS, LAO_ERROR_INVALID_ARGUMENT,                                                   \
       "offsets must start at 0, never fall and end at point_count")                                \
@@ -221,6 +221,16 @@ VSF_API lao_result vsf_mesh_smooth(const vsf_host *host, vsf_mesh *mesh,
    SETTING, MESH_COUNT, MEMORY, CANCELLED. */
 VSF_API lao_result vsf_mesh_subdivide(const vsf_host *host, const vsf_mesh *mesh, uint32_t levels,
                                       vsf_mesh *finer);
+
+/* A mesh of at most `most` triangles (4 or more), for one that is too large for a device: the
+   vertices in a cell of a lattice become one, where the planes of their triangles meet best
+   (Lindstrom 2000: the sum of the planes' quadrics, held near the mean), and triangles keep their
+   corners' cells. The finest lattice with so few triangles is found by halving. What is thinner
+   than a cell may join or vanish; attributes are means of the numbers among them. Normals are made
+   anew. Linear in the mesh; memory: 24 bytes per vertex, 120 per cell. Fails with NULL_ARGUMENT,
+   SETTING, MEMORY, CANCELLED, MESH_EMPTY. */
+VSF_API lao_result vsf_mesh_decimate(const vsf_host *host, const vsf_mesh *mesh, uint32_t most,
+                                     vsf_mesh *coarser);
 
 /* The parts of which all is made, in double precision. Thread: any.
    Gradient of the linear function with values l at the corners (L14 Eq. 1), in the triangle's
@@ -461,7 +471,7 @@ VSF_API double vsf_segment_distance2(const float p[3], const float a[3], const f
       "keep position, normal, measure and look-up of the nearest front face as images")
 
 /* What a surface looks like; as lao_settings: zero is the default unless its bit is set. Depth
-   shadow, focus and attenuation are those of the frame's first set, which must have a surface. */
+   shadow, focus and attenuation are those of the first surface that has them on. */
 typedef struct vsf_settings {
     uint64_t set;
 #define VSF__FIELD(name, type, minimum, maximum, standard, structural, unit, choices, help)        \
@@ -534,15 +544,14 @@ LAO_FN lao_v4 vsf_eye(lao_m4 view, float orthographic) {
     lao_v3 up = lao_v3_make(view.x.y, view.y.y, view.z.y);
     lao_v3 back = lao_v3_make(view.x.z, view.y.z, view.z.z);
     LAO_EXACT float scale2 = lao_v3_dot(back, back);
-    if (orthographic > 0.5f) {
-        LAO_EXACT float inverse = 1.0f / lao_sqrt(scale2);
-        lao_v3 direction = lao_v3_scale(back, inverse);
-        return lao_v4_make(direction.x, direction.y, direction.z, 0.0f);
-    }
+    LAO_EXACT float inverse = 1.0f / lao_sqrt(scale2);
     LAO_EXACT float x = -(right.x * view.w.x + up.x * view.w.y + back.x * view.w.z) / scale2;
     LAO_EXACT float y = -(right.y * view.w.x + up.y * view.w.y + back.y * view.w.z) / scale2;
     LAO_EXACT float z = -(right.z * view.w.x + up.z * view.w.y + back.z * view.w.z) / scale2;
-    return lao_v4_make(x, y, z, 1.0f);
+    lao_v3 direction = lao_v3_scale(back, inverse);
+    bool flat_view = orthographic > 0.5f; /* choices, no branch: see vsf_near_mix */
+    return lao_v4_make(flat_view ? direction.x : x, flat_view ? direction.y : y,
+                       flat_view ? direction.z : z, flat_view ? 0.0f : 1.0f);
 }
 /* From a point to the camera, as long as it is far; unit when `naive` (or orthographic). */
 LAO_FN lao_v3 vsf_to_eye(lao_v4 eye, lao_v3 p, bool naive) {
@@ -598,27 +607,20 @@ LAO_FN float vsf_ring_end(vsf_ring_sum ring) {
 }
 
 /* ---- the two coordinates of the look-up (METHODS 9.2, 9.3) */
-/* A distance between those at two steps; VSF_FAR where either is (0 and 1 take one step alone). */
+/* A distance between those at two steps; VSF_FAR where either is (0 and 1 take one step alone).
+   Choices and no branches: lavapipe compiles a program anew, frame by frame, whose branches ask for
+   a uniform. */
 LAO_FN float vsf_near_mix(float before, float after, float part) {
-    if (!(part > 0.0f)) {
-        return before;
-    }
-    if (!(part < 1.0f)) {
-        return after;
-    }
-    if (before >= VSF_FAR || after >= VSF_FAR) {
-        return VSF_FAR;
-    }
-    LAO_EXACT float d = before + part * (after - before);
-    return d;
+    LAO_EXACT float between = before + part * (after - before);
+    float d = lao_max(before, after) >= VSF_FAR ? VSF_FAR : between;
+    d = part < 1.0f ? d : after;
+    return part > 0.0f ? d : before;
 }
 /* x = 1 - distance / gamma in [0, 1]; 0 where nothing is lit */
 LAO_FN float vsf_near_x(float distance, float gamma) {
-    if (!(gamma > 0.0f) || distance >= VSF_FAR) {
-        return 0.0f;
-    }
     LAO_EXACT float x = 1.0f - distance / gamma;
-    return lao_clamp01(x);
+    float near_x = distance < VSF_FAR ? lao_clamp01(x) : 0.0f;
+    return gamma > 0.0f ? near_x : 0.0f;
 }
 /* y = c s in [-1, 1] */
 LAO_FN float vsf_measure_y(float measure, float brightness) {
@@ -746,6 +748,7 @@ LAO_FN lao_v3 vsf_unsharp(lao_v3 color, float depth, float blurred, float streng
 }
 
 /* ---- what the passes are made of */
+#define VSF_LEFT_TILES 64 /* along both sides of the picture */
 #define VSF_SHADING_ADAPTIVE 0
 #define VSF_SHADING_TRANSPARENT 1
 #define VSF_SHADING_FRESNEL 2
@@ -2249,6 +2252,398 @@ VSF_API lao_result vsf_mesh_subdivide(const vsf_host *host, const vsf_mesh *mesh
                          "subdivision level %u", i);
     }
     *finer = now;
+    return LAO_OK;
+}
+
+/* ================================================================================================
+ * decimation */
+
+enum { VSF__MOST_CELLS = 1 << 20 }; /* along an axis */
+
+/* What meets in a cell: the sum of the quadrics of its corners' planes about its middle, and means
+   weighted by area. */
+typedef struct vsf__cell {
+    double planes[6], toward[3], mean[3], weight;
+    uint32_t first;  /* vertex */
+    uint32_t vertex; /* of the coarser mesh; VSF_NONE: no triangle is left there */
+} vsf__cell;
+
+typedef struct vsf__lattice {
+    const vsf_mesh *mesh;
+    double low[3], span, size; /* mm: corner, longest side, side of a cell */
+    uint64_t *keys;            /* per cell, in the order of the vertices: its place */
+    uint32_t *cells;           /* per vertex */
+    uint32_t *table;           /* hashed: cell + 1 */
+    uint32_t mask, count;
+    vsf__cell *parts; /* per cell */
+} vsf__lattice;
+
+static uint64_t vsf__cell_key(const vsf__lattice *l, const float *p) {
+    uint64_t key = 0;
+    int k;
+    for (k = 0; k < 3; k++) {
+        double at = floor(((double)p[k] - l->low[k]) / l->size);
+        key = key << 21 | (uint64_t)(at > 0 ? at < VSF__MOST_CELLS ? at : VSF__MOST_CELLS : 0);
+    }
+    return key;
+}
+/* Triangles whose corners are in three cells. */
+static uint32_t vsf__cells_left(const vsf__lattice *l) {
+    const uint32_t *t = l->mesh->triangles;
+    uint32_t i, left = 0;
+    for (i = 0; i < l->mesh->triangle_count; i++, t += 3) {
+        uint32_t a = l->cells[t[0]], b = l->cells[t[1]], c = l->cells[t[2]];
+        left += a != b && b != c && c != a;
+    }
+    return left;
+}
+/* Gives every vertex its cell, with n of them along the longest axis. */
+static void vsf__cells_find(vsf__lattice *l, uint32_t n) {
+    uint32_t v;
+    l->size = l->span / n;
+    l->count = 0;
+    memset(l->table, 0, ((size_t)l->mask + 1) * sizeof *l->table);
+    for (v = 0; v < l->mesh->vertex_count; v++) {
+        uint64_t key = vsf__cell_key(l, l->mesh->positions + 3 * (size_t)v);
+        uint32_t at = lao_hash((uint32_t)key ^ lao_hash((uint32_t)(key >> 32))) & l->mask;
+        while (l->table[at] && l->keys[l->table[at] - 1] != key) {
+            at = (at + 1) & l->mask;
+        }
+        if (!l->table[at]) {
+            l->keys[l->count++] = key;
+            l->table[at] = l->count;
+        }
+        l->cells[v] = l->table[at] - 1;
+    }
+}
+/* The finest lattice with at most `most` triangles. Returns 0, or -1 when the host cancels. */
+static int vsf__cells_fit(vsf__progress *progress, vsf__lattice *l, uint32_t most) {
+    uint32_t few = 1, many = VSF__MOST_CELLS;
+    while (many - few > 1) {
+        uint32_t middle = few + (many - few) / 2;
+        vsf__cells_find(l, middle);
+        if (vsf__cells_left(l) <= most) {
+            few = middle;
+        } else {
+            many = middle;
+        }
+        if (vsf__tick(progress, 1)) {
+            return -1;
+        }
+    }
+    vsf__cells_find(l, few);
+    return 0;
+}
+
+static void vsf__cell_middle(const vsf__lattice *l, uint32_t cell, double middle[3]) {
+    int k;
+    for (k = 0; k < 3; k++) {
+        uint32_t at = (uint32_t)(l->keys[cell] >> (42 - 21 * k)) & 0x1fffffu;
+        middle[k] = l->low[k] + (at + 0.5) * l->size;
+    }
+}
+static void vsf__cell_add(const vsf__lattice *l, uint32_t v, const double n[3], double area) {
+    vsf__cell *c = &l->parts[l->cells[v]];
+    double middle[3], p[3], off;
+    int k;
+    vsf__cell_middle(l, l->cells[v], middle);
+    vsf__load(l->mesh->positions + 3 * (size_t)v, p);
+    vsf__sub(p, middle, p);
+    off = vsf__dot(n, p);
+    for (k = 0; k < 3; k++) {
+        c->planes[k] += area * n[k] * n[k];
+        c->planes[3 + k] += area * n[k] * n[(k + 1) % 3]; /* xy, yz, zx */
+        c->toward[k] += area * off * n[k];
+        c->mean[k] += area * p[k];
+    }
+    c->weight += area;
+}
+/* Quadrics of all corners, and a number for each cell in which a triangle that stays has one.
+   Returns how many there are. */
+static uint32_t vsf__cells_sum(vsf__lattice *l, uint32_t *triangles, uint32_t *sources) {
+    const uint32_t *t = l->mesh->triangles;
+    uint32_t i, k, vertices = 0, left = 0;
+    memset(l->parts, 0, (size_t)l->count * sizeof *l->parts);
+    for (i = 0; i < l->count; i++) {
+        l->parts[i].first = l->parts[i].vertex = VSF_NONE;
+    }
+    for (i = 0; i < l->mesh->triangle_count; i++, t += 3) {
+        uint32_t cell[3];
+        double p[3][3], n[3], area;
+        for (k = 0; k < 3; k++) {
+            cell[k] = l->cells[t[k]];
+            vsf__load(l->mesh->positions + 3 * (size_t)t[k], p[k]);
+        }
+        area = vsf__face(p[0], p[1], p[2], n);
+        for (k = 0; k < 3; k++) {
+            vsf__cell_add(l, t[k], n, area);
+            l->parts[cell[k]].first =
+                t[k] < l->parts[cell[k]].first ? t[k] : l->parts[cell[k]].first;
+        }
+        if (cell[0] == cell[1] || cell[1] == cell[2] || cell[2] == cell[0]) {
+            continue;
+        }
+        for (k = 0; k < 3; k++) {
+            vsf__cell *c = &l->parts[cell[k]];
+            c->vertex = c->vertex == VSF_NONE ? vertices++ : c->vertex;
+            triangles[3 * (size_t)left + k] = c->vertex;
+        }
+        sources[left++] = i;
+    }
+    return vertices;
+}
+/* The place that the quadric likes best, held to the mean by a hundredth of its weight, and within
+   a cell's size of it. */
+static void vsf__cell_place(const vsf__lattice *l, uint32_t cell, float out[3]) {
+    const vsf__cell *c = &l->parts[cell];
+    const double hold = 0.01 * c->weight, weight = c->weight > 0 ? c->weight : 1;
+    double a[3][3], b[3], middle[3], cross[3][3], det;
+    int k, j;
+    for (k = 0; k < 3; k++) {
+        a[k][k] = c->planes[k] + hold;
+        a[k][(k + 1) % 3] = a[(k + 1) % 3][k] = c->planes[3 + k];
+        b[k] = c->toward[k] + hold * c->mean[k] / weight;
+    }
+    for (k = 0; k < 3; k++) {
+        vsf__cross(a[(k + 1) % 3], a[(k + 2) % 3], cross[k]);
+    }
+    det = vsf__dot(a[0], cross[0]);
+    vsf__cell_middle(l, cell, middle);
+    for (k = 0; k < 3; k++) {
+        double at = 0, mean = c->mean[k] / weight;
+        for (j = 0; j < 3; j++) {
+            at += cross[j][k] * b[j];
+        }
+        at = det > 0 ? at / det : mean;
+        at = at > mean - l->size ? at < mean + l->size ? at : mean + l->size : mean - l->size;
+        out[k] = (float)(middle[k] + at);
+    }
+}
+/* Means of the vertices of each cell, of the numbers alone. */
+static void vsf__cells_attribute(const vsf__lattice *l, const vsf_attribute *from, double *sums,
+                                 float *to) {
+    const uint32_t width = from->components;
+    uint32_t v, k, i;
+    for (k = 0; k < width; k++) {
+        memset(sums, 0, 2 * (size_t)l->count * sizeof *sums);
+        for (v = 0; v < l->mesh->vertex_count; v++) {
+            double value = (double)from->values[(size_t)v * width + k];
+            double *sum = sums + 2 * (size_t)l->cells[v];
+            if (fabs(value) < 1e300) {
+                sum[0] += value;
+                sum[1] += 1;
+            }
+        }
+        for (i = 0; i < l->count; i++) {
+            if (l->parts[i].vertex != VSF_NONE) {
+                to[(size_t)l->parts[i].vertex * width + k] =
+                    (float)(sums[2 * (size_t)i] / sums[2 * (size_t)i + 1]);
+            }
+        }
+    }
+}
+
+/* What the coarser mesh is made of. */
+typedef struct vsf__coarse {
+    float *positions;
+    uint32_t *triangles, *sources;
+    uint32_t *firsts; /* per vertex: of the finer mesh */
+    uint32_t *table;  /* hashed: triangle + 1 */
+    uint32_t mask;
+    vsf_attribute *attributes;
+    double *sums;
+} vsf__coarse;
+
+static void vsf__coarse_parts(vsf__coarse *c, const vsf__lattice *l, uint32_t left,
+                              vsf__block *block) {
+    const vsf_mesh *mesh = l->mesh;
+    uint32_t i;
+    c->positions = vsf__part_float(block, 3 * (uint64_t)l->count);
+    c->triangles = vsf__part_u32(block, 3 * (uint64_t)left);
+    c->sources = vsf__part_u32(block, left);
+    c->firsts = vsf__part_u32(block, l->count);
+    for (c->mask = 1; c->mask < 2 * (uint64_t)left; c->mask *= 2) {
+    }
+    c->table = vsf__part_u32(block, c->mask--);
+    c->sums = (double *)vsf__part(block, mesh->attribute_count ? 2 * (uint64_t)l->count : 0,
+                                  sizeof(double));
+    c->attributes = (vsf_attribute *)vsf__part(block, mesh->attribute_count, sizeof(vsf_attribute));
+    for (i = 0; i < mesh->attribute_count; i++) {
+        float *values = vsf__part_float(block, (uint64_t)l->count * mesh->attributes[i].components);
+        if (block->base) {
+            c->attributes[i] = mesh->attributes[i];
+            c->attributes[i].values = values;
+        }
+    }
+}
+
+/* Where a triangle's three vertices are in the table, or would be. */
+static uint32_t vsf__fold_find(const vsf__coarse *c, uint32_t triangle) {
+    const uint32_t *t = c->triangles + 3 * (size_t)triangle;
+    uint32_t sum = t[0] + t[1] + t[2], at, k;
+    at = lao_hash(sum ^ lao_hash(t[0] ^ t[1] ^ t[2])) & c->mask;
+    for (; c->table[at]; at = (at + 1) & c->mask) {
+        const uint32_t *o = c->triangles + 3 * (size_t)(c->table[at] - 1);
+        for (k = 0; k < 3 && (t[k] == o[0] || t[k] == o[1] || t[k] == o[2]); k++) {
+        }
+        if (k == 3) {
+            break;
+        }
+    }
+    return at;
+}
+/* Where a wrinkle was pressed flat two triangles lie on each other, face to face: they go. Returns
+   how many triangles are left. */
+static uint32_t vsf__drop_folds(vsf__coarse *c, uint32_t count) {
+    uint32_t i, k, left = 0;
+    memset(c->table, 0, ((size_t)c->mask + 1) * sizeof *c->table);
+    for (i = 0; i < count; i++) {
+        uint32_t at = vsf__fold_find(c, i);
+        const uint32_t *t = c->triangles + 3 * (size_t)i, *o;
+        if (!c->table[at]) {
+            c->table[at] = i + 1;
+            continue;
+        }
+        o = c->triangles + 3 * (size_t)(c->table[at] - 1);
+        k = t[0] == o[0] ? 0 : t[0] == o[1] ? 1 : 2;
+        if (c->sources[c->table[at] - 1] != VSF_NONE && t[1] == o[(k + 2) % 3]) {
+            c->sources[c->table[at] - 1] = c->sources[i] = VSF_NONE;
+        }
+    }
+    for (i = 0; i < count; i++) {
+        if (c->sources[i] != VSF_NONE) {
+            memmove(c->triangles + 3 * (size_t)left, c->triangles + 3 * (size_t)i,
+                    3 * sizeof *c->triangles);
+            c->sources[left++] = c->sources[i];
+        }
+    }
+    return left;
+}
+
+/* The mesh of a lattice's cells. */
+static lao_result vsf__coarse_build(const vsf_host *host, vsf__lattice *l, vsf__coarse *c,
+                                    uint32_t left, vsf_mesh *coarser) {
+    const vsf_mesh *mesh = l->mesh;
+    vsf_mesh_desc desc;
+    lao_result result;
+    uint32_t i;
+    memset(&desc, 0, sizeof desc);
+    desc.vertex_count = vsf__cells_sum(l, c->triangles, c->sources);
+    desc.positions = c->positions;
+    desc.triangle_count = vsf__drop_folds(c, left);
+    desc.triangles = c->triangles;
+    desc.attributes = c->attributes;
+    desc.attribute_count = mesh->attribute_count;
+    for (i = 0; i < l->count; i++) {
+        if (l->parts[i].vertex != VSF_NONE) {
+            vsf__cell_place(l, i, c->positions + 3 * (size_t)l->parts[i].vertex);
+            c->firsts[l->parts[i].vertex] = l->parts[i].first;
+        }
+    }
+    for (i = 0; i < mesh->attribute_count; i++) {
+        vsf__cells_attribute(l, &mesh->attributes[i], c->sums,
+                             (float *)(uintptr_t)c->attributes[i].values); /* ours */
+    }
+    result = vsf_mesh_build(host, &desc, coarser);
+    if (result != LAO_OK) {
+        return result;
+    }
+    for (i = 0; i < coarser->vertex_count; i++) {
+        coarser->vertex_sources[i] = mesh->vertex_sources[c->firsts[coarser->vertex_sources[i]]];
+    }
+    for (i = 0; i < coarser->triangle_count; i++) {
+        coarser->triangle_sources[i] =
+            mesh->triangle_sources[c->sources[coarser->triangle_sources[i]]];
+    }
+    coarser->source_count = 0;
+    return LAO_OK;
+}
+
+static lao_result vsf__decimate_cells(const vsf_host *host, vsf__lattice *l, uint32_t left,
+                                      vsf_mesh *coarser) {
+    lao_allocator allocator = vsf__allocator(host);
+    vsf__block block = {NULL, 0};
+    vsf__coarse c;
+    lao_result result = LAO_ERROR_OUT_OF_MEMORY;
+    void *memory;
+    memset(&c, 0, sizeof c);
+    vsf__coarse_parts(&c, l, left, &block);
+    memory = vsf__take(&allocator, block.used, 1);
+    l->parts = (vsf__cell *)vsf__take(&allocator, l->count, sizeof *l->parts);
+    if (memory && l->parts) {
+        block.base = (unsigned char *)memory;
+        block.used = 0;
+        vsf__coarse_parts(&c, l, left, &block);
+        result = vsf__coarse_build(host, l, &c, left, coarser);
+    }
+    vsf__give(&allocator, memory);
+    vsf__give(&allocator, l->parts);
+    return result;
+}
+
+static void vsf__lattice_parts(vsf__lattice *l, vsf__block *block) {
+    l->keys = (uint64_t *)vsf__part(block, l->mesh->vertex_count, sizeof *l->keys);
+    l->cells = vsf__part_u32(block, l->mesh->vertex_count);
+    l->table = vsf__part_u32(block, (uint64_t)l->mask + 1);
+}
+
+/* Without words: the caller says what failed. */
+static lao_result vsf__decimate(const vsf_host *host, const vsf_mesh *mesh, uint32_t most,
+                                vsf_mesh *coarser) {
+    lao_allocator allocator = vsf__allocator(host);
+    vsf__progress progress = vsf__progress_make(host, 20);
+    vsf__block block = {NULL, 0};
+    vsf__lattice l;
+    lao_result result = LAO_ERROR_OUT_OF_MEMORY;
+    void *memory;
+    int k;
+    memset(&l, 0, sizeof l);
+    l.mesh = mesh;
+    for (k = 0; k < 3; k++) {
+        double side = (double)mesh->info.bounds[1][k] - (double)mesh->info.bounds[0][k];
+        l.low[k] = (double)mesh->info.bounds[0][k];
+        l.span = side > l.span ? side : l.span;
+    }
+    for (l.mask = 1; l.mask < 2 * mesh->vertex_count; l.mask *= 2) {
+    }
+    l.mask--;
+    vsf__lattice_parts(&l, &block);
+    memory = vsf__take(&allocator, block.used, 1);
+    if (memory) {
+        block.base = (unsigned char *)memory;
+        block.used = 0;
+        vsf__lattice_parts(&l, &block);
+        result = vsf__cells_fit(&progress, &l, most)
+                     ? LAO_ERROR_NOT_READY
+                     : vsf__decimate_cells(host, &l, vsf__cells_left(&l), coarser);
+        vsf__give(&allocator, memory);
+    }
+    return result;
+}
+
+VSF_API lao_result vsf_mesh_decimate(const vsf_host *host, const vsf_mesh *mesh, uint32_t most,
+                                     vsf_mesh *coarser) {
+    vsf_host quiet; /* warnings of the fine mesh need no repetition */
+    lao_result result;
+    if (!mesh || !mesh->memory || !coarser) {
+        return vsf__fail(host, VSF_LOG_NULL_ARGUMENT, "vsf_mesh_decimate");
+    }
+    if (most < 4) {
+        return vsf__fail(host, VSF_LOG_SETTING, "%u triangles to be left, not 4 or more", most);
+    }
+    memset(&quiet, 0, sizeof quiet);
+    if (host) {
+        quiet = *host;
+        quiet.log = NULL;
+    }
+    result = vsf__decimate(&quiet, mesh, most, coarser);
+    if (result != LAO_OK) {
+        return vsf__fail(host,
+                         result == LAO_ERROR_OUT_OF_MEMORY ? VSF_LOG_MEMORY
+                         : result == LAO_ERROR_NOT_READY   ? VSF_LOG_CANCELLED
+                                                           : VSF_LOG_MESH_EMPTY,
+                         "decimation of %u triangles to %u", mesh->triangle_count, most);
+    }
     return LAO_OK;
 }
 
@@ -3883,15 +4278,19 @@ VSF_API lao_result vsf_near_exact(const vsf_host *host, const vsf_near *table, d
 #define VSF__SURFACE {"#surface_points", '>', 0}
 #define VSF__ANY {NULL, 0, 0}
 #define VSF__MESH VSF__READ("#surface_points"), VSF__READ("#surface_normals"), VSF__READ("#surface_triangles")
-#define VSF__FRONT VSF__MESH, VSF__READ("#surface_near"), VSF__READ("#surface_values"), VSF__READ("surface_measure"), VSF__READ("zbuffer"), VSF__READ("#surface_map")
+#define VSF__FRONT VSF__MESH, VSF__READ("surface_measure"), VSF__READ("surface_nearness"), VSF__READ("zbuffer"), VSF__READ("#surface_map")
 #define VSF__PLAIN(format, size) format, size, 0, 0, NULL, 0, LAO_ENCODING_PLAIN
 
 static const lao_image_row vsf__images[] = {
-    /* 1/mm, one texel per vertex */
-    {"surface_measure",  VSF__PLAIN(LAO_FORMAT_R32F, LAO_SIZE_ITEMS),   {0, 0, 0, 0}, VSF__ANY, {NULL, NULL, NULL, NULL}},
+    /* one texel per vertex: its place and measure (1/mm); its normal and nearness, x of the look-up */
+    {"surface_measure",  VSF__PLAIN(LAO_FORMAT_RGBA32F, LAO_SIZE_ITEMS), {0, 0, 0, 0}, VSF__ANY, {NULL, NULL, NULL, NULL}},
+    {"surface_nearness", VSF__PLAIN(LAO_FORMAT_RGBA32F, LAO_SIZE_ITEMS), {0, 0, 0, 0}, VSF__ANY, {NULL, NULL, NULL, NULL}},
     /* front faces, premultiplied: those composed so far, and the next one */
     {"surface_over",     VSF__PLAIN(LAO_FORMAT_RGBA16F, LAO_SIZE_FULL), {0, 0, 0, 0}, VSF__ANY, {NULL, NULL, NULL, NULL}},
     {"surface_layer",    VSF__PLAIN(LAO_FORMAT_RGBA16F, LAO_SIZE_FULL), {0, 0, 0, 0}, {"layers", '>', 0}, {NULL, NULL, NULL, NULL}},
+    /* whether the layer before has any pixel: by tiles, and all in all */
+    {"surface_tiles",    LAO_FORMAT_R32F, LAO_SIZE_FIXED, VSF_LEFT_TILES, VSF_LEFT_TILES, NULL, 0, LAO_ENCODING_PLAIN, {0, 0, 0, 0}, {"layers", '>', 0}, {NULL, NULL, NULL, NULL}},
+    {"surface_left",     LAO_FORMAT_R32F, LAO_SIZE_FIXED, 1, 1, NULL, 0, LAO_ENCODING_PLAIN, {0, 0, 0, 0}, {"layers", '>', 0}, {NULL, NULL, NULL, NULL}},
     {"surface_z",        VSF__PLAIN(LAO_FORMAT_D32F, LAO_SIZE_FULL),    {1, 0, 0, 0}, VSF__ANY, {NULL, NULL, NULL, NULL}},
     /* the nearest front faces of all sets, for the effects */
     {"surface_nearest",  VSF__PLAIN(LAO_FORMAT_D32F, LAO_SIZE_FULL),    {1, 0, 0, 0}, VSF__ANY, {NULL, NULL, NULL, NULL}},
@@ -3914,14 +4313,18 @@ static const lao_pass_row vsf__passes[] = {
     {"surface_back", LAO_PASS_DRAW_MESH, "surface_mesh", 0, LAO_STAGE_SHADE, LAO_SCOPE_PER_SET, LAO_REPEAT_NONE, NULL, LAO_BLEND_NONE, LAO_DEPTH_NEARER, LAO_CULL_FRONT, {VSF__SURFACE},
      {VSF__KEEP("shaded"), VSF__KEEP("zbuffer")}, {VSF__MESH}},
     {"surface_measure", LAO_PASS_FULLSCREEN, "surface_measure", 0, LAO_STAGE_COMPOSE, LAO_SCOPE_PER_SET, LAO_REPEAT_NONE, NULL, LAO_BLEND_NONE, LAO_DEPTH_NONE, LAO_CULL_NONE, {VSF__SURFACE},
-     {VSF__WRITE("surface_measure")}, {VSF__READ("#surface_points"), VSF__READ("#surface_normals"), VSF__READ("#surface_rings")}},
+     {VSF__WRITE("surface_measure"), VSF__WRITE("surface_nearness")}, {VSF__READ("#surface_points"), VSF__READ("#surface_normals"), VSF__READ("#surface_rings"), VSF__READ("#surface_near"), VSF__READ("#surface_values")}},
     /* the nearest front face, then peel by peel those behind it, and all of them over the scene */
     {"surface_front", LAO_PASS_DRAW_MESH, "surface_mesh", 1, LAO_STAGE_COMPOSE, LAO_SCOPE_PER_SET, LAO_REPEAT_NONE, NULL, LAO_BLEND_NONE, LAO_DEPTH_NEARER, LAO_CULL_BACK, {VSF__SURFACE},
      {VSF__CLEAR("surface_over"), VSF__CLEAR("surface_position"), VSF__CLEAR("surface_normal"), VSF__CLEAR("surface_lut"), VSF__CLEAR("surface_z")}, {VSF__FRONT}},
     {"surface_nearest", LAO_PASS_FULLSCREEN, "surface_nearest", 0, LAO_STAGE_COMPOSE, LAO_SCOPE_PER_SET, LAO_REPEAT_NONE, NULL, LAO_BLEND_NONE, LAO_DEPTH_NEARER, LAO_CULL_NONE, {VSF__SURFACE},
      {VSF__KEEP("surface_nearest")}, {VSF__READ("surface_z")}},
-    {"surface_peel", LAO_PASS_DRAW_MESH, "surface_mesh", 2, LAO_STAGE_COMPOSE, LAO_SCOPE_PER_SET, LAO_REPEAT_COUNT, "layers", LAO_BLEND_NONE, LAO_DEPTH_NEARER, LAO_CULL_BACK, {VSF__SURFACE},
-     {VSF__CLEAR("surface_layer"), {"surface_z", LAO_LEVEL_SAME, 0, LAO_PHASE_OTHER, LAO_LOAD_CLEAR}}, {VSF__FRONT, VSF__READ("surface_z")}},
+    {"surface_tiles", LAO_PASS_FULLSCREEN, "surface_left", 0, LAO_STAGE_COMPOSE, LAO_SCOPE_PER_SET, LAO_REPEAT_COUNT, "layers", LAO_BLEND_NONE, LAO_DEPTH_NONE, LAO_CULL_NONE, {VSF__SURFACE},
+     {VSF__WRITE("surface_tiles")}, {VSF__READ("surface_z")}},
+    {"surface_left", LAO_PASS_FULLSCREEN, "surface_left", 1, LAO_STAGE_COMPOSE, LAO_SCOPE_PER_SET, LAO_REPEAT_WITH_LAST, NULL, LAO_BLEND_NONE, LAO_DEPTH_NONE, LAO_CULL_NONE, {VSF__SURFACE},
+     {VSF__WRITE("surface_left")}, {VSF__READ("surface_tiles")}},
+    {"surface_peel", LAO_PASS_DRAW_MESH, "surface_mesh", 2, LAO_STAGE_COMPOSE, LAO_SCOPE_PER_SET, LAO_REPEAT_WITH_LAST, NULL, LAO_BLEND_NONE, LAO_DEPTH_NEARER, LAO_CULL_BACK, {VSF__SURFACE},
+     {VSF__CLEAR("surface_layer"), {"surface_z", LAO_LEVEL_SAME, 0, LAO_PHASE_OTHER, LAO_LOAD_CLEAR}}, {VSF__FRONT, VSF__READ("surface_z"), VSF__READ("surface_left")}},
     {"surface_under", LAO_PASS_FULLSCREEN, "surface_layers", 0, LAO_STAGE_COMPOSE, LAO_SCOPE_PER_SET, LAO_REPEAT_WITH_LAST, NULL, LAO_BLEND_NONE, LAO_DEPTH_NONE, LAO_CULL_NONE, {VSF__SURFACE},
      {VSF__OTHER("surface_over")}, {VSF__READ("surface_over"), VSF__READ("surface_layer")}},
     {"surface_over", LAO_PASS_FULLSCREEN, "surface_layers", 0, LAO_STAGE_COMPOSE, LAO_SCOPE_PER_SET, LAO_REPEAT_NONE, NULL, LAO_BLEND_NONE, LAO_DEPTH_NONE, LAO_CULL_NONE, {VSF__SURFACE},
@@ -3996,7 +4399,7 @@ VSF_API lao_result vsf_object_make(const vsf_host *host, const vsf_mesh *mesh, u
                          "distances of %u vertices need %u texels, the device has %u", n, 2 * n,
                          max_texels);
     }
-    extra = (float *)vsf__take(&a, 3 * (uint64_t)n + 4 * VSF_MAP_COLORS, sizeof *extra);
+    extra = (float *)vsf__take(&a, 3 * (uint64_t)n + 4u * VSF_MAP_COLORS, sizeof *extra);
     if (!extra) {
         vsf_buffers_free(&buffers);
         return vsf__fail(host, VSF_LOG_MEMORY, "distances of %u vertices", n);

@@ -31,7 +31,7 @@ typedef struct bench_options {
     bench_size sizes[MOST];
     uint32_t size_count;
     bool json, data, quick, flow, vessel, screen, surface, help, table1;
-    const char *export_lines;
+    const char *export_lines, *export_fills;
 } bench_options;
 
 static const char usage[] =
@@ -60,6 +60,8 @@ static const char usage[] =
     "  --surface               instead: frames of meshes of 10,000 to 1,000,000 triangles, per "
     "pass\n"
     "  --export-lines FILE     only write lines and camera for bench/vtk_peer.py\n"
+    "  --export-fills FOLDER   with --screen: only pull-push beside inverse distances, and their\n"
+    "                          pictures for bench/fill_peer.py\n"
     "\n"
     "Passes are timed with a finish (OpenGL) or timestamps (Vulkan), in the same frames as their\n"
     "floors: floor_lines, the same quads with one flat colour and one target; floor_taps, as many\n"
@@ -141,6 +143,10 @@ static bool parse_halo(char *word, bench_options *options) {
            bench_fail("--halo: '%s' is none of none, uniform, depth", word);
 }
 
+static bool parse_fills(char *word, bench_options *options) {
+    options->export_fills = word;
+    return true;
+}
 static bool parse_export(char *word, bench_options *options) {
     options->export_lines = word;
     return true;
@@ -153,10 +159,10 @@ typedef struct flag_row {
 } flag_row;
 
 static const flag_row flags[] = {
-    {"--backend", false, parse_backend}, {"--presets", true, parse_preset},
-    {"--lines", true, parse_lines},      {"--size", true, parse_size},
-    {"--frames", false, parse_frames},   {"--export-lines", false, parse_export},
-    {"--halo", false, parse_halo},
+    {"--backend", false, parse_backend},    {"--presets", true, parse_preset},
+    {"--lines", true, parse_lines},         {"--size", true, parse_size},
+    {"--frames", false, parse_frames},      {"--export-lines", false, parse_export},
+    {"--export-fills", false, parse_fills}, {"--halo", false, parse_halo},
 };
 
 static bool parse_value(const flag_row *flag, char *value, bench_options *options) {
@@ -443,7 +449,7 @@ static bool screen_run(const bench_options *options, cJSON *document) {
     cJSON_AddStringToObject(document, "program", "lineao bench --screen");
     cJSON_AddNumberToObject(document, "version", LAO_VERSION);
     cJSON_AddNumberToObject(document, "processors", (double)sysconf(_SC_NPROCESSORS_ONLN));
-    return bench_screen_run(document, options->quick);
+    return bench_screen_run(document, options->quick, options->export_fills);
 }
 
 /* The same of `--surface`. */

@@ -7,8 +7,9 @@
 #include <cJSON.h>
 #include <stdbool.h>
 
-/* Adds "steps", "passes" and "fills", arrays of measurements, to the document. quick: small. */
-bool bench_screen_run(cJSON *document, bool quick);
+/* Adds "steps", "passes" and "fills", arrays of measurements, to the document. quick: small. folder
+ * (Optional): only "fills", and their pictures go there. */
+bool bench_screen_run(cJSON *document, bool quick, const char *folder);
 
 /* Prints them as tables to standard output. */
 void bench_screen_print(const cJSON *document);

@@ -30,7 +30,9 @@ lao_v2 blurred(ivec2 texel, ivec2 along) {
     LAO_EXACT float columns = lao_frame.viewport.x / float(lao_constant_supersampling);
     LAO_EXACT float rows = lao_frame.viewport.y / float(lao_constant_supersampling);
     float sigma = vsf_shadow_sigma(width, columns, rows);
-    int reach = vsf_reach(sigma, VSF_SHADOW_REACH);
+    /* The share of what is covered is never negative: nothing is added. But a loop whose end is known from uniforms alone
+       is unrolled by lavapipe in a program of its own, compiled anew in every frame. */
+    int reach = vsf_reach(sigma, VSF_SHADOW_REACH) + int(lao_min(texelFetch(source, texel, 0).y, 0.0));
     ivec2 last = ivec2(lao_step.size.xy) - ivec2(1);
     LAO_EXACT float sum = 0.0;
     LAO_EXACT float count = 0.0;

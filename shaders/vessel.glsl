@@ -55,9 +55,11 @@ sdv_solid sdv_solid_add_all(samplerBuffer shapes, samplerBuffer fields, sdv_soli
 /* How near to a vessel a ray must pass for anything to be drawn of it, mm; pixels are widest at the far end. */
 float sdv_frame_reach(float supersampling) {
     float zoom = sdv_zoom(lao_frame.scale, lao_frame.depth, lao_frame.depth.x + lao_frame.depth.z, supersampling);
+    bool inked = lao_setting_parameterization > 1.5 && lao_setting_void_style > float(SDV_VOID_CHROMADEPTH) + 0.5;
     return sdv_near_miss_reach(sdv_outline_width(lao_setting_silhouette, lao_setting_outline_unit, zoom),
                                sdv_outline_width(lao_setting_contour, lao_setting_outline_unit, zoom),
-                               lao_setting_shadow_width, lao_setting_mark_halo, lao_frame.depth.z);
+                               lao_setting_shadow_width, lao_setting_mark_halo,
+                               inked ? lao_setting_void_reach : 0.0, lao_frame.depth.z);
 }
 /* ---- the field made by the device, by the rows vessel_region_counts to vessel_grid: images of items, LAO_ITEMS_WIDTH a row */
 ivec2 sdv_item(int i) {

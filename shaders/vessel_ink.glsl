@@ -1,23 +1,20 @@
 /* Strokes and dots by (u, v), as the white they leave (L19 5; METHODS 7.5). What a new solution changes fades over. */
-LAO_TEX(0, sampler2D, position)
-LAO_TEX(1, sampler2D, normal)
-LAO_TEX(2, sampler2D, ray)
-LAO_TEX(3, samplerBuffer, box)
-LAO_TEX(4, samplerBuffer, cells)
-LAO_TEX(5, samplerBuffer, ids)
-LAO_TEX(6, samplerBuffer, cones)
-LAO_TEX(7, samplerBuffer, shapes) /* with variant 1 */
-LAO_TEX(8, samplerBuffer, fields)
-LAO_TEX(9, sampler2D, uv)
-LAO_TEX(10, sampler2D, surface)
-LAO_TEX(11, sampler2D, bgnormal)
-LAO_TEX(12, sampler2D, along)
-LAO_TEX(13, sampler2D, across)
-LAO_TEX(14, sampler2D, recalled)
-LAO_TEX(15, samplerBuffer, pattern) /* its size; thresholds */
-LAO_TEX(16, samplerBuffer, colors)  /* for marks */
-LAO_TEX(17, sampler2D, grid)
-LAO_TEX(18, sampler2D, lists)
+LAO_TEX(0, sampler2D, surface)
+LAO_TEX(1, sampler2D, bgnormal)
+LAO_TEX(2, sampler2D, normal) /* for the near miss */
+LAO_TEX(3, sampler2D, ray)
+LAO_TEX(4, samplerBuffer, box)
+LAO_TEX(5, samplerBuffer, cells)
+LAO_TEX(6, samplerBuffer, ids)
+LAO_TEX(7, samplerBuffer, cones)
+LAO_TEX(8, samplerBuffer, shapes) /* with variant 1 */
+LAO_TEX(9, samplerBuffer, fields)
+LAO_TEX(10, sampler2D, uv)
+LAO_TEX(11, sampler2D, recalled)
+LAO_TEX(12, samplerBuffer, pattern) /* its size; thresholds */
+LAO_TEX(13, samplerBuffer, colors)  /* for marks */
+LAO_TEX(14, sampler2D, grid)
+LAO_TEX(15, sampler2D, lists)
 LAO_CONSTANT(0, lao_constant_near_miss)
 LAO_CONSTANT(1, lao_constant_field_occlusion)
 LAO_CONSTANT(2, lao_constant_style)
@@ -69,34 +66,40 @@ void main() {
     lao_v2 slope = lao_pixel_slope(lao_frame.ray, float(pixel.x) + 0.5, float(pixel.y) + 0.5);
     lao_v3 direction = lao_ray_direction(lao_frame.world, slope, lao_frame.depth.w);
     lao_v3 p = texelFetch(surface, pixel, 0).xyz;
-    lao_v3 n = texelFetch(bgnormal, pixel, 0).xyz;
-    vec4 hit = texelFetch(position, pixel, 0);
+    vec4 facing = texelFetch(bgnormal, pixel, 0);
+    lao_v3 n = facing.xyz;
+    vec4 hit = vec4(p, facing.w);
     vec4 r = texelFetch(ray, pixel, 0);
-    float wide_u = sdv_footprint_at(texelFetch(along, pixel, 0).xyz, n, p, direction, lao_setting_ssp_period);
-    float wide_v = sdv_footprint_at(texelFetch(across, pixel, 0).xyz, n, p, direction, lao_setting_ssp_period);
+    vec4 own = texelFetch(uv, pixel, 0);
+    lao_v3 z = sdv_lift(lao_frame.world, lao_v3_make(own.z, own.w, 1.0), n, n);
+    float wide_u = sdv_footprint_at(z, n, p, direction, lao_setting_ssp_period);
+    float wide_v = sdv_footprint_at(lao_v3_cross(n, z), n, p, direction, lao_setting_ssp_period);
     int style = SDV_STYLE_PLAIN;
     float tone = 1.0;
     bool marked = false;
     LAO_EXACT float shadow = 0.0;
     if (!sdv_is_covered(hit.w)) {
-        tone = sdv_style_tone(-lao_v3_dot(n, direction), 0.5, 0.5, 1.0); /* half black where the sheet is seen edge-on */
+        float d_min = texelFetch(normal, pixel, 0).w;
+        float reach = lao_constant_near_miss == SDV_NEAR_MISS_NONE ? 0.0 : 0.01 * lao_setting_void_reach * lao_frame.depth.z;
+        float sheet = sdv_style_tone(-lao_v3_dot(n, direction), 0.5, 0.5, 1.0); /* half black where it is seen edge-on */
+        LAO_EXACT float left = 1.0 - sdv_void_share(d_min, reach, lao_max(wide_u, wide_v)) * (1.0 - sheet);
+        tone = left;
         if (lao_constant_void_style == SDV_VOID_STIPPLE) {
             style = SDV_STYLE_STIPPLE;
         } else if (lao_constant_void_style == SDV_VOID_HATCH) {
             style = SDV_STYLE_HATCH;
         }
         lao_v3 origin = lao_ray_origin(lao_frame.world, slope, lao_frame.depth.w);
-        marked = has_halo(texelFetch(normal, pixel, 0).w, lao_v3_along(origin, direction, r.y), direction,
-                          lao_max(wide_u, wide_v));
+        marked = has_halo(d_min, lao_v3_along(origin, direction, r.y), direction, lao_max(wide_u, wide_v));
     } else {
         if (lao_constant_variant != 2 && hit.w >= 0.0) {
             marked = is_marked(hit.w, p);
         }
         style = lao_constant_style;
         if (style != SDV_STYLE_PLAIN && style != SDV_STYLE_SHADOW) {
-            lao_v3 facing = facing_at(hit, n);
-            tone = sdv_style_tone(-lao_v3_dot(facing, direction), lao_setting_surface_ambient, lao_setting_surface_diffuse,
-                                  field_light(p, facing, r));
+            lao_v3 lit = facing_at(hit, n);
+            tone = sdv_style_tone(-lao_v3_dot(lit, direction), lao_setting_surface_ambient, lao_setting_surface_diffuse,
+                                  field_light(p, lit, r));
         }
         if (style != SDV_STYLE_PLAIN && lao_constant_near_miss != SDV_NEAR_MISS_NONE && lao_constant_variant != 2) {
             shadow = lao_setting_shadow_strength * sdv_depth_shadow_at(texelFetch(normal, pixel, 0), r);
@@ -104,7 +107,7 @@ void main() {
     }
     float mark = marked ? lao_setting_mark_darkness : 0.0;
     vec4 before = texelFetch(recalled, pixel, 0);
-    float now = paper(style, texelFetch(uv, pixel, 0).xy, 1.0 - tone, shadow, mark, wide_u, wide_v);
+    float now = paper(style, own.xy, 1.0 - tone, shadow, mark, wide_u, wide_v);
     float rest = 0.0;
     if (before.w > 0.0) {
         LAO_EXACT float shown = paper(style, before.xy, 1.0 - tone, shadow, mark, wide_u, wide_v) + before.z;

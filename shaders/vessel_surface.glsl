@@ -9,9 +9,9 @@ LAO_CONSTANT(0, lao_constant_guide)
 LAO_CONSTANT(1, lao_constant_variant) /* 1: not a tree's surface */
 
 LAO_OUT(0, vec4, out_surface) /* world, mm; sdv_surface_mark, 0 in an empty picture */
-LAO_OUT(1, vec4, out_normal)  /* world, towards the viewer */
+LAO_OUT(1, vec4, out_normal)  /* world, towards the viewer; cone, as traced */
 LAO_OUT(2, vec4, out_place)   /* as out_surface; covered: 1 */
-LAO_OUT(3, vec4, out_facing)  /* as out_normal */
+LAO_OUT(3, vec4, out_facing)  /* the normal */
 LAO_OUT(4, vec4, out_tensor)  /* xx, xy, yy; weight */
 
 #ifdef LAO_FRAGMENT
@@ -77,7 +77,7 @@ void main() {
         covered = 0.0;
     }
     out_surface = vec4(p, mark);
-    out_normal = vec4(n, 0.0);
+    out_normal = vec4(n, hit.w);
     out_place = vec4(p, covered);
     out_facing = vec4(n, 0.0);
     out_tensor = guide(pixel, hit, n);

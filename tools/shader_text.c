@@ -67,13 +67,23 @@ static void print_graph(void) {
     lao_graph_print(&module, 1, print_graph_text, NULL);
 }
 
-/* Four at a time, then the rest one by one. */
+/* Of level 0 the G-buffer's own: a stage has 16 textures for sure. */
+static void print_tangent(uint32_t level) {
+    if (level)
+        printf("tangent%u", level);
+    else
+        printf("tangent");
+}
+
+/* Four at a time, then the rest: three together or one by one. */
 static void print_samples(uint32_t level, uint32_t count) {
+    static const char *const words[] = {"", "one", "", "three", "four"};
     uint32_t i, k, n;
     for (i = 0; i < count; i += n) {
-        n = count - i >= 4 ? 4 : 1;
-        printf("            sum = lao_sample_%s(sum, level%u, tangent%u, c, g",
-               n == 4 ? "four" : "one", level, level);
+        n = count - i >= 4 ? 4 : count - i == 3 ? 3 : 1;
+        printf("            sum = lao_sample_%s(sum, level%u, ", words[n], level);
+        print_tangent(level);
+        printf(", c, g");
         for (k = 0; k < n; k++) {
             lao_v3 d = lao_sample_direction(level, i + k, count);
             printf(", lao_v3_make(%.9g, %.9g, %.9g)", (double)d.x, (double)d.y, (double)d.z);
@@ -91,8 +101,9 @@ static void print_levels(void) {
         printf("        if (lao_constant_samples == %d) {\n", SHIPPED_SAMPLES);
         print_samples(level, lao_sample_count(SHIPPED_SAMPLES, level));
         printf("        } else {\n");
-        printf("            sum = lao_sample_loop(level%u, tangent%u, c, g, %uu);\n        }\n",
-               level, level, level);
+        printf("            sum = lao_sample_loop(level%u, ", level);
+        print_tangent(level);
+        printf(", c, g, %uu);\n        }\n", level);
         printf("        LAO_EXACT float mean = sum.x / lao_max(sum.y, 1.0);\n        total = total "
                "+ mean;\n    }\n");
     }

@@ -60,7 +60,8 @@ static const flag_row flags[] = {
     {"--out", "-o", "FILE.png", FLAG_TEXT, CLI_VESSEL, ALL(out), NULL, "the picture; of several cameras or frames a pattern (out_%04d.png, first = 0) or a video"},
     {"--style", NULL, "NAME", FLAG_CHOICE, CLI_VESSEL, ALL(vessel.style), CLI_STYLES, "a set of settings: default, plain (light alone), ink (flat colours and outlines), glow (soft, no outlines), stipple, hatch, crosshatch, layered (ink that follows the vessels), shadow (hatched depth shadows) or void (depth as colour behind them)"},
     {"--grid", NULL, "N", FLAG_COUNT, CLI_VESSEL, ALL(vessel.grid), NULL, "cells of the distance field along its longest axis, 16..512 (128)"},
-    {"--layout", NULL, "FILE", FLAG_LAYOUT, CLI_VESSEL, ALL(vessel.layout), NULL, "the tree in 2D: a drawing (.svg) or numbers (.json); give it twice for both"},
+    {"--field", NULL, "NAME", FLAG_CHOICE, CLI_VESSEL, ALL(vessel.field), "cpu|device", "who builds the distance field, to the same bits: cpu (default), once, or device (the backend, in every frame, as for a tree that moves)"},
+    {"--layout", NULL, "FILE", FLAG_LAYOUT, CLI_VESSEL, ALL(vessel.layout), NULL, "the tree in 2D: drawn by the backend (.png), as lines (.svg) or numbers (.json); give it once for each"},
     {"--layout-weight", NULL, "NAME", FLAG_TEXT, CLI_VESSEL, ALL(vessel.weight), NULL, "lay out by this attribute of the nodes, by radius, or by how near they are to the --path or --target (near), instead of by their number"},
     {"--tree", NULL, "FILE.json", FLAG_TEXT, CLI_VESSEL, ALL(vessel.tree), NULL, "nodes and segments as they are drawn; segment.V of a dump counts these"},
     {"--path", NULL, "X,Y,Z:X,Y,Z...", FLAG_TARGET, CLI_VESSEL, ALL(vessel.targets), "path", "distances of the vessels to a path through these points (mm): a needle"},
@@ -88,6 +89,7 @@ static const flag_row flags[] = {
     {"--flip", NULL, "on|off", FLAG_CHOICE, CLI_SURFACE, ALL(surface.flip), "on|off", "turn the MESH inside out, or leave an open one that seems to be so (closed ones never are)"},
     {"--smooth", NULL, "N", FLAG_COUNT, CLI_SURFACE, ALL(surface.smooth), NULL, "smooth the MESH by N double steps that keep its volume (Taubin)"},
     {"--subdivide", NULL, "N", FLAG_COUNT, CLI_SURFACE, ALL(surface.subdivide), NULL, "each time four triangles for one (Loop), 1..4"},
+    {"--triangles", NULL, "N", FLAG_COUNT, CLI_SURFACE, ALL(surface.triangles), NULL, "merge vertices until N triangles are left at most, 100..16777216 (of meshes that have more: 16777216)"},
     {"--scene", NULL, "NAME", FLAG_CHOICE, CLI_SURFACE, ALL(scene), "aorta|aneurysm|liver|bone", "embedded surface, when no MESH is given: aorta (an arch with a bulge, and its flow), aneurysm, liver (with a vein inside) or bone"},
     {"--frames", NULL, "N", FLAG_COUNT, CLI_SURFACE, ALL(frames), NULL, "a sequence of pictures or a video over one period of the lines, or from their first time to the last"},
     {"--time", NULL, "MS", FLAG_NUMBER, CLI_SURFACE, ALL(time), NULL, "what is lit: the lines around this time, and the surface near them (0; of the embedded flow 180, of a VOLUME half of the median line's)"},
@@ -114,7 +116,7 @@ static const flag_row flags[] = {
     {"--tolerance", NULL, "MM", FLAG_ABOVE, FLOWN, ALL(flow.tolerance), NULL, "error of a part of a step, for dopri (0.0001)"},
     {"--attributes", NULL, "NAME", FLAG_CHOICE, FLOWN, ALL(flow.attributes), "vorticity|curvature|all", "more per point: vorticity (1/s), curvature (1/mm) or all"},
     {"--names", NULL, "U,V,W[,MASK]", FLAG_TEXT, VOLUME, ALL(flow.names), NULL, "arrays of a volume: three components, or one vector: VELOCITY[,MASK]"},
-    {"--unit", NULL, "NAME", FLAG_CHOICE, ANY & ~CLI_INFO, ALL(flow.unit), "m/s|cm/s|mm/s", "of a volume's velocities: m/s (default), cm/s or mm/s"},
+    {"--unit", NULL, "NAME", FLAG_CHOICE, CLI_FLOW, ALL(flow.unit), "m/s|cm/s|mm/s", "of a volume's velocities: m/s (default), cm/s or mm/s"},
     {"--axes", NULL, "mm|grid", FLAG_CHOICE, VOLUME, ALL(flow.axes), "mm|grid", "of a volume's velocities: those of its mm (default) or of its voxels"},
     {"--spacing", NULL, "MM[,MM,MM]", FLAG_SPACING, VOLUME, ALL(flow.spacing), NULL, "size of a volume's voxels, where it tells none or a wrong one"},
     {"--time-step", NULL, "MS", FLAG_ABOVE, VOLUME, ALL(flow.time_step), NULL, "between a volume's frames"},
@@ -133,7 +135,7 @@ static const flag_row flags[] = {
     {"--frames", NULL, "N", FLAG_COUNT, CLI_RENDER, ALL(frames), NULL, "a sequence of pictures or a video over one period, or from the first time to the last"},
     {"--fps", NULL, "N", FLAG_COUNT, SHOT, ALL(fps), NULL, "frames per second of a video (25)"},
     {"--backdrop", NULL, NULL, FLAG_SWITCH, CLI_RENDER, ALL(backdrop), NULL, "of velocity volumes and the scene flow: the highest speeds of the beat behind the lines, the vessel's outline around"},
-    {"--shared-occlusion", NULL, NULL, FLAG_SWITCH, DRAWN, ALL(shared_occlusion), NULL, "FILEs occlude each other, not only themselves; settings from occlusion to shading are then the first FILE's"},
+    {"--shared-occlusion", NULL, NULL, FLAG_SWITCH, DRAWN, ALL(shared_occlusion), NULL, "FILEs of lines occlude each other, not only themselves; settings from occlusion to shading are then the first one's"},
     {"--outline", NULL, "MESH", FLAG_TEXT, CLI_RENDER, ALL(outline), NULL, "the silhouette of a vessel's wall (mm) behind the lines and its outline around: STL, PLY, OBJ, VTP or VTK"},
     {"--legend", NULL, "SIDE", FLAG_CHOICE, SHOT, ALL(legend), "off|left|right|bottom", "scale of each attribute's colours in the picture: off, left, right or bottom (off)"},
     {"--legend-title", NULL, "TEXT", FLAG_TEXT, SHOT, ALL(legend_title), NULL, "above the first scale (the attribute's name, and its unit if known)"},
@@ -145,7 +147,8 @@ static const flag_row flags[] = {
     {"--widest", NULL, "N", FLAG_COUNT, CLI_SHEET, ALL(widest), NULL, "pixels; wider pictures shrink by a whole factor (no limit)"},
     {"--json", NULL, NULL, FLAG_SWITCH, CLI_INFO | CLI_COMPARE | CLI_FLOW | CLI_VESSEL | CLI_SURFACE, ALL(json), NULL, "one JSON object on standard output"},
     {"--help", "-h", NULL, FLAG_SWITCH, ANY | CLI_SHEET | CLI_VESSEL | CLI_SURFACE, ALL(help), NULL, "this text"},
-    {"--color", NULL, "#rrggbb", FLAG_PAINT, BOTH, FILE_(color), NULL, "or r,g,b in 0..1, direction, line or the NAME of an attribute"},
+    {"--as", NULL, "KIND", FLAG_CHOICE, BOTH, FILE_(as), "lines|tree|surface", "draw the FILE as lines, tree or surface: where it holds several the lines are drawn, unless told; of a tree the surface too can be made"},
+    {"--color", NULL, "#rrggbb", FLAG_PAINT, BOTH, FILE_(color), NULL, "of lines: or r,g,b in 0..1, direction, line or the NAME of an attribute; of trees: or layout, radius, order or a NAME; of surfaces the NAME of an array of the vertices"},
     {"--colormap", NULL, "NAME", FLAG_CHOICE, BOTH, FILE_(colormap), COLOUR_MAPS, "of attributes: " COLOUR_MAPS " (viridis)"},
     {"--range", NULL, "A,B", FLAG_RANGE, BOTH, FILE_(range), NULL, "values at both ends of the colour map, or percentiles of all (2%,98%)"},
     {"--color", NULL, "NAME", FLAG_PAINT, CLI_VESSEL, FILE_(color), NULL, "layout (hue and saturation of the 2D layout), radius, order (of branching), distance, #rrggbb or the NAME of an attribute"},
@@ -154,7 +157,7 @@ static const flag_row flags[] = {
     {"--every", NULL, "N", FLAG_COUNT, TRACE, FILE_(every), NULL, "keep each N-th line"},
     {"--min-length", NULL, "MM", FLAG_LENGTH, TRACE, FILE_(min_length), NULL, "drop shorter lines (files: none; of a volume: shorter than two voxels)"},
     {"--bundle", NULL, "NAME", FLAG_TEXT, BOTH, FILE_(bundle), NULL, "keep the lines of this group (TRX group, TT cluster)"},
-    {"--unit", NULL, "NAME", FLAG_CHOICE, CLI_INFO, FILE_(unit), "mm|cm|um|m|m/s|cm/s|mm/s", "of trees and meshes: mm, cm, um or m, whatever the file tells or seems to be in; of volumes: m/s, cm/s or mm/s"},
+    {"--unit", NULL, "NAME", FLAG_CHOICE, CLI_INFO | BOTH, FILE_(unit), "mm|cm|um|m|m/s|cm/s|mm/s", "of trees and meshes: mm, cm, um or m, whatever the file tells or seems to be in; of volumes: m/s, cm/s or mm/s"},
     {"--unit", NULL, "NAME", FLAG_CHOICE, CLI_VESSEL, FILE_(unit), "mm|cm|um|m", "of the tree, whatever the file tells or seems to be in"},
     {"--set", NULL, "NAME=VALUE", FLAG_ASSIGN, DRAWN, FILE_(settings), NULL, "a setting, as its own flag does"},
 };
@@ -290,7 +293,9 @@ static module_row module_of(cli_command_bit command, int index) {
         return index == 0 ? surface : index == 1 ? lines : none;
     if (command & CLI_VESSEL)
         return index == 0 ? vessel : index == 1 ? layout : lines;
-    return index == 0 && command & (CLI_RENDER | CLI_COMPARE) ? lines : none;
+    if (command & BOTH)
+        return index == 0 ? lines : index == 1 ? vessel : surface;
+    return none;
 }
 
 /* A setting of one of the modules; row NULL: there is none. */
@@ -416,13 +421,13 @@ static bool set_scene(const char *value, const char **scene) {
 
 /* ---- flags ------------------------------------------------------------------------------ */
 
-/* The extension says which of the two. */
+/* The extension says which of the three. */
 static bool set_layout(const flag_row *row, const char *value, const char **names) {
     const char *dot = strrchr(value, '.');
-    if (!dot || !is_choice("svg|json", dot + 1))
-        return cli_fail("%s: '%s' is not a value of it; its name must end in .svg or .json",
+    if (!dot || !is_choice("svg|json|png", dot + 1))
+        return cli_fail("%s: '%s' is not a value of it; its name must end in .png, .svg or .json",
                         row->name, value);
-    names[strcmp(dot, ".json") == 0] = value;
+    names[strcmp(dot, ".json") == 0 ? 1 : strcmp(dot, ".png") == 0 ? 2 : 0] = value;
     return true;
 }
 
@@ -541,6 +546,15 @@ static const flag_row *find_flag(cli_command_bit command, const char *name, size
     return NULL;
 }
 
+uint32_t cli_flag_words(cli_command_bit command, const char *word, bool *of_file) {
+    const char *equals = strchr(word, '=');
+    const flag_row *row = find_flag(command, word, equals ? (size_t)(equals - word) : strlen(word));
+    *of_file = !row || row->per_file; /* the rest are settings */
+    if (word[0] != '-' || strcmp(word, "--") == 0)
+        return 0;
+    return equals || (row && row->type == FLAG_SWITCH) ? 1 : 2;
+}
+
 /* Flags of the table, then settings in the spelling of flags. */
 static const char *flag_name(const void *user, uint32_t index) {
     const parser *p = user;
@@ -594,7 +608,7 @@ static bool check_vessel(const cli_options *o) {
     if (o->file_count == 1 && v->nodes)
         return cli_fail("--nodes: is for the embedded tree, and a TREE is given");
     if (!o->out && !o->dump && !o->timings && !o->save_camera && !v->layout[0] && !v->layout[1] &&
-        !v->tree && !o->json)
+        !v->layout[2] && !v->tree && !o->json)
         return cli_fail("vessel: no output is asked for; write -o out.png");
     if (v->grid && (v->grid < 16 || v->grid > 512))
         return cli_fail("--grid: '%u' is not a value of it; write 16..512", v->grid);
@@ -639,6 +653,9 @@ static bool check_surface(const cli_options *o) {
         return cli_fail("surface: no output is asked for; write -o out.png");
     if (s->subdivide > 4)
         return cli_fail("--subdivide: '%u' is not a value of it; write 1..4", s->subdivide);
+    if (s->triangles && (s->triangles < 100 || s->triangles > CLI_MOST_TRIANGLES))
+        return cli_fail("--triangles: '%u' is not a value of it; write 100..%u", s->triangles,
+                        (unsigned)CLI_MOST_TRIANGLES);
     if (s->value && o->file_count == 0)
         return cli_fail("--value: names an array of a MESH, and none is given");
     if (!flow && (o->frames || !isnan(o->time)))
@@ -780,9 +797,12 @@ void cli_print_flags(cli_command_bit command) {
                command & (CLI_VESSEL | CLI_SURFACE) ? "" : ", for all FILEs or for one");
     for (int m = 0; m < MODULES; m++) { /* of those for lines few do anything to vessels */
         const lao_module *module = module_of(command, m).module;
-        if (module && !(command & (CLI_VESSEL | CLI_SURFACE) && module == lao_lines_module()))
+        if (module && (command & BOTH ? m == 0 : module != lao_lines_module()))
             print_settings(module);
     }
+    if (command & BOTH)
+        printf("  Behind a tree those of lineao vessel --help, behind a surface those of lineao "
+               "surface\n  --help (both end in a list of settings).\n");
     if (command & (CLI_VESSEL | CLI_SURFACE))
         printf("  Those of lineao render --help are taken too; supersampling is --ssaa.\n");
 }

@@ -57,7 +57,8 @@ typedef struct cli_source {
     uint32_t every;
     double min_length; /* mm; negative: none is given */
     const char *bundle;
-    const char *unit; /* of trees and meshes; NULL: as the file tells, or guessed */
+    const char *unit; /* of trees, meshes, volumes; NULL: as the file tells, or guessed */
+    const char *as;   /* what it is drawn as: "lines", "tree", "surface"; NULL: by its content */
 } cli_source;
 
 /* How velocity volumes are read and traced. Numbers are 0, texts NULL where nothing is given. */
@@ -84,13 +85,13 @@ typedef struct cli_target_option {
     const char *text;
 } cli_target_option;
 typedef struct cli_vessel_options {
-    const char *style, *tree, *cameras, *weight, *surface, *pattern;
+    const char *style, *tree, *cameras, *weight, *surface, *pattern, *field;
     cli_target_option targets[CLI_TARGETS]; /* several only with `link` */
     uint32_t target_count;
     double risk; /* mm; negative: not given */
     bool link;
     const char *shape_color; /* "nearest" or a colour; NULL: ivory */
-    const char *layout[2];   /* NAME.svg, NAME.json */
+    const char *layout[3];   /* NAME.svg, NAME.json, NAME.png */
     uint32_t margin;         /* pixels */
     bool last;
     uint32_t grid, nodes; /* cells; nodes of the embedded tree; 0: not given */
@@ -98,12 +99,15 @@ typedef struct cli_vessel_options {
     uint32_t shape_count;
 } cli_vessel_options;
 
+/* Of a mesh, for any device: vertices are counted in floats. */
+enum { CLI_MOST_TRIANGLES = 1 << 24 };
+
 /* What `surface` does with a mesh. */
 typedef struct cli_surface_options {
     const char *lines, *vertices, *baseline, *focus, *value, *flip, *colormap;
     double focus_at[4]; /* two numbers (depths, mm) or four (a ball) */
     int focus_numbers;  /* 0: none */
-    uint32_t smooth, subdivide, grid;
+    uint32_t smooth, subdivide, triangles, grid; /* 0: not given */
     double brightness;  /* mm; 0: from the mesh; negative: not given */
     double contours[2]; /* mm, width of contours and suggestive contours; 0: none */
     double threshold;   /* 1/mm^2, of the latter; negative: not given */
@@ -132,6 +136,10 @@ typedef struct cli_options {
 /* Parses what stands behind the command's name. False: wrong usage, reported. Free in any case. */
 bool cli_parse(cli_command_bit command, int argc, char **argv, cli_options *out);
 void cli_options_free(cli_options *options);
+
+/* How many words a flag takes, itself among them; *of_file: does it hold for one FILE? 0: the word
+ * is no flag. */
+uint32_t cli_flag_words(cli_command_bit command, const char *word, bool *of_file);
 
 /* "#rrggbb", "#rrggbbaa", "r,g,b" or "r,g,b,a" in 0..1; else false. */
 bool cli_parse_color(const char *text, double color[4]);

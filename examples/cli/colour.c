@@ -212,7 +212,7 @@ static bool colour_set(cli_set *set) {
 bool cli_colour(cli_scene *scene) {
     bool ok = true;
     for (uint32_t s = 0; s < scene->count && ok; s++)
-        ok = colour_set(&scene->sets[s]);
+        ok = scene->sets[s].object || colour_set(&scene->sets[s]);
     for (uint32_t s = 0; s < scene->count && ok; s++) {
         cli_set *set = &scene->sets[s];
         ok = !set->value || find_range(scene, set);

@@ -51,7 +51,7 @@ static void to_picture(const float *data, const lao_read_info *info, const float
                   : c < info->channels ? data[i / 4 * info->channels + c]
                                        : range[0];
         v = (v - range[0]) / (range[1] - range[0]);
-        out[i] = c == 3 ? 255 : (uint8_t)(255 * (v > 0 ? fminf(v, 1) : 0) + 0.5f);
+        out[i] = c == 3 ? 255 : (uint8_t)roundf(255 * (v > 0 ? fminf(v, 1) : 0));
     }
 }
 
@@ -165,13 +165,14 @@ static bool compare_image(comparison *c, const lao_image_row *row) {
     return ok;
 }
 
-/* The picture first, then the images in order of the table. */
-static bool compare_images(comparison *c) {
-    const lao_module *module = lao_lines_module();
+/* The picture first, then the images in order of the tables. */
+static bool compare_images(comparison *c, const cli_scene *scene) {
     bool ok = true;
-    for (int pass = 0; pass < 2; pass++) {
+    for (uint32_t m = 0; m < 2 + scene->module_count; m++) {
+        const lao_module *module = m < 2 ? lao_lines_module() : scene->modules[m - 2];
         for (uint32_t i = 0; ok && i < module->image_count; i++) {
-            if ((strcmp(module->images[i].name, "out") == 0) == (pass == 0))
+            bool is_out = strcmp(module->images[i].name, "out") == 0;
+            if (is_out == (m == 0))
                 ok = compare_image(c, &module->images[i]);
         }
     }
@@ -193,10 +194,10 @@ static bool report(const cli_options *options, comparison *c) {
         cJSON_AddBoolToObject(json, "equal", c->differing_bits == 0);
         return cli_write_json(NULL, json);
     }
-    printf("%-14s %5s %6s %6s %14s %16s\n", "image", "level", "width", "height", "differing bits",
+    printf("%-16s %5s %6s %6s %14s %16s\n", "image", "level", "width", "height", "differing bits",
            "differing texels");
     for (const cJSON *i = c->images->child; i; i = i->next) {
-        printf("%-14s %5d %6d %6d %14.0f %16.0f\n", cJSON_GetObjectItem(i, "name")->valuestring,
+        printf("%-16s %5d %6d %6d %14.0f %16.0f\n", cJSON_GetObjectItem(i, "name")->valuestring,
                cJSON_GetObjectItem(i, "level")->valueint, cJSON_GetObjectItem(i, "width")->valueint,
                cJSON_GetObjectItem(i, "height")->valueint,
                cJSON_GetObjectItem(i, "differing_bits")->valuedouble,
@@ -211,7 +212,7 @@ static bool compare(const cli_options *options, const cli_scene *scene, comparis
               cli_session_open(&c->gl, "gl", scene, &shot, LAO_VIEW_KEEP_IMAGES) &&
               cli_session_open(&c->vk, "vk", scene, &shot, LAO_VIEW_KEEP_IMAGES) &&
               cli_session_render(&c->gl, &shot, 0) && cli_session_render(&c->vk, &shot, 0) &&
-              compare_images(c) && report(options, c);
+              compare_images(c, scene) && report(options, c);
     cli_session_close(&c->vk);
     cli_session_close(&c->gl);
     return ok;

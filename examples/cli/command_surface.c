@@ -86,20 +86,6 @@ static bool write_vertices(const cli_wall *wall, const cli_shot *shot, const cha
 
 /* ---- pictures --------------------------------------------------------------------------- */
 
-/* Positions become absolute. */
-static bool edit_planes(void *user, cli_planes *planes) {
-    static const char *const names[3] = {"position.X", "position.Y", "position.Z"};
-    const cli_wall *wall = user;
-    size_t count;
-    const float *mask = cli_planes_find(planes, "mask.V", &count);
-    for (int k = 0; k < 3; k++) {
-        float *p = cli_planes_find(planes, names[k], &count);
-        for (size_t i = 0; mask && p && i < count; i++)
-            p[i] = mask[i] > 0 ? (float)((double)p[i] + wall->scene.origin[k]) : 0.0f;
-    }
-    return mask != NULL || cli_fail("the dump has no surface");
-}
-
 /* frame -1: the only one. */
 static bool write_frame(cli_wall *wall, cli_session *session, const cli_shot *shot,
                         cli_video *video, int64_t frame) {
@@ -111,7 +97,7 @@ static bool write_frame(cli_wall *wall, cli_session *session, const cli_shot *sh
         char *numbered = frame < 0 ? NULL : cli_frame_path(paths[i], (uint32_t)frame);
         const char *path = numbered ? numbered : paths[i];
         ok = (frame < 0 || numbered) && cli_go_on() &&
-             (i == 0 ? cli_dump(path, session, &wall->scene, shot, edit_planes, wall)
+             (i == 0 ? cli_dump(path, session, &wall->scene, shot, cli_wall_planes, wall)
                      : cli_write_picture(path, video, session, shot->background[3] >= 1,
                                          cli_wall_legends, wall));
         free(numbered);
@@ -184,34 +170,9 @@ static bool render(cli_wall *wall) {
 
 /* ---- report ----------------------------------------------------------------------------- */
 
-/* The warning i of all about the mesh; false: there are fewer. */
-static bool warning_text(const cli_wall *wall, uint32_t i, char *text, size_t size) {
-    const bool mesh = (wall->contents.kinds & IO_MESH) != 0;
-    const io_mesh *triangles = &wall->contents.mesh;
-    const io_tree *tree = &wall->contents.tree;
-    const sdv_tree *built = &wall->vessel.tree;
-    uint32_t read = mesh ? triangles->warning_count : tree->warning_count;
-    if (i < read)
-        snprintf(text, size, "%s", mesh ? triangles->warnings[i] : tree->warnings[i]);
-    else if ((i -= read) < built->warning_count)
-        sdv_tree_warning_text(built, i, text, size);
-    else if ((i -= built->warning_count) < wall->mesh.warning_count)
-        vsf_mesh_warning_text(&wall->mesh, i, text, size);
-    else if ((i -= wall->mesh.warning_count) == 0 && wall->turned)
-        snprintf(text, size,
-                 "it is open and seemed inside out, and was turned round; --flip off leaves it");
-    else if (i == 0 && wall->widened)
-        snprintf(text, size,
-                 "%u nodes have a radius below %.3g mm and were given that; --grid makes it less",
-                 (unsigned)wall->widened, wall->thinnest);
-    else
-        return false;
-    return true;
-}
-
 static void add_warnings(const cli_wall *wall, cJSON *list) {
     char text[512];
-    for (uint32_t i = 0; warning_text(wall, i, text, sizeof text); i++) {
+    for (uint32_t i = 0; cli_wall_warning(wall, i, text, sizeof text); i++) {
         if (list)
             cJSON_AddItemToArray(list, cJSON_CreateString(text));
         else
@@ -251,7 +212,7 @@ int cli_surface(const cli_options *options) {
         if (!cli_writable(outputs[i]))
             return CLI_FAILED;
     }
-    bool ok = cli_wall_load(options, &wall) && render(&wall);
+    bool ok = cli_wall_load(options, NULL, &wall) && render(&wall);
     if (ok && options->json)
         ok = report(&wall);
     else if (ok)

@@ -62,40 +62,6 @@ static bool write_tree(const cli_tree *tree, const char *path) {
     return cli_text_write(&out, path);
 }
 
-/* ---- dumps ------------------------------------------------------------------------------- */
-
-/* Positions become absolute; what the field does not know is added: mask and distance. */
-static bool edit_planes(void *user, cli_planes *planes) {
-    static const char *const names[3] = {"position.X", "position.Y", "position.Z"};
-    static const char *const behind[3] = {"bgposition.X", "bgposition.Y", "bgposition.Z"};
-    const cli_tree *tree = user;
-    size_t count;
-    const float *segment = cli_planes_find(planes, "segment.V", &count);
-    float *p[3], *b[3], *mask = cli_planes_add(planes, "mask.V");
-    float *distance = tree->target ? cli_planes_add(planes, "distance.V") : NULL;
-    if (!segment || !mask || (tree->target && !distance))
-        return segment != NULL || cli_fail("the dump has no segments");
-    for (int k = 0; k < 3; k++) {
-        p[k] = cli_planes_find(planes, names[k], &count);
-        b[k] = cli_planes_find(planes, behind[k], &count);
-    }
-    for (size_t i = 0; i < count; i++) {
-        bool covered = segment[i] != -1;
-        mask[i] = covered ? 1.0f : 0.0f;
-        if (distance)
-            distance[i] =
-                covered ? sdv_target_point(tree->target, lao_v3_make(p[0][i], p[1][i], p[2][i]))
-                        : SDV_FAR;
-        for (int k = 0; k < 3; k++) {
-            double o = tree->vessel.origin[k];
-            p[k][i] = covered ? (float)((double)p[k][i] + o) : 0.0f;
-            if (b[k])
-                b[k][i] = (float)((double)b[k][i] + o);
-        }
-    }
-    return true;
-}
-
 /* ---- pictures ---------------------------------------------------------------------------- */
 
 /* What is drawn: one tree, or with --link one for each path and target. */
@@ -150,7 +116,7 @@ static bool write_frame(stage *s, int64_t frame) {
         const char *path = numbered ? numbered : paths[i];
         ok = (frame < 0 || numbered) && cli_go_on();
         if (ok && i == 0)
-            ok = cli_dump(path, &s->sessions[0], &s->trees[0].scene, &s->shot, edit_planes,
+            ok = cli_dump(path, &s->sessions[0], &s->trees[0].scene, &s->shot, cli_tree_planes,
                           &s->trees[0]);
         else if (ok)
             ok = s->options->vessel.link ? write_page(path, s) : write_view(path, s);
@@ -179,26 +145,6 @@ static bool read_views(const cli_options *options, view_list *out) {
     return true;
 }
 
-/* The camera turned around its up vector through the point that it looks at, by a part of a turn.
- */
-static void turn(const camera_pose *from, double part, camera_pose *out) {
-    double angle = 6.283185307179586 * part, c = cos(angle), s = sin(angle), size = 0, along = 0;
-    double axis[3], arm[3];
-    *out = *from;
-    for (int k = 0; k < 3; k++)
-        size += from->up[k] * from->up[k];
-    for (int k = 0; k < 3; k++) {
-        axis[k] = from->up[k] / sqrt(size);
-        arm[k] = from->eye[k] - from->center[k];
-        along += axis[k] * arm[k];
-    }
-    for (int k = 0; k < 3; k++) {
-        int i = (k + 1) % 3, j = (k + 2) % 3;
-        double across = axis[i] * arm[j] - axis[j] * arm[i];
-        out->eye[k] = from->center[k] + c * arm[k] + s * across + (1 - c) * along * axis[k];
-    }
-}
-
 static bool draw_all(stage *s, uint32_t flags) {
     bool ok = true;
     for (uint32_t i = 0; ok && i < s->count; i++)
@@ -216,7 +162,7 @@ static bool draw_views(stage *s, const view_list *views) {
         if (views->poses)
             s->shot.camera = views->poses[i];
         else if (i > 0)
-            turn(&first, (double)i / views->count, &s->shot.camera);
+            cli_turn(&first, (double)i / views->count, &s->shot.camera);
         cli_shot_aim(&s->trees[0].scene, &s->shot);
         if (views->count > 1)
             cli_progress_show(&progress, i, views->count);
@@ -237,7 +183,9 @@ static bool draw(stage *s, const view_list *views) {
                         options->fps ? options->fps : 25))
         return false;
     s->video = &video;
-    return cli_video_close(&video, draw_views(s, views));
+    bool ok = cli_video_close(&video, draw_views(s, views));
+    s->video = NULL;
+    return ok;
 }
 
 bool cli_write_camera(const cli_options *options, const camera_pose *camera) {
@@ -246,6 +194,17 @@ bool cli_write_camera(const cli_options *options, const camera_pose *camera) {
     char *text = camera_print(camera);
     bool ok = text ? cli_write_text(options->save_camera, text) : cli_fail("out of memory");
     free(text);
+    return ok;
+}
+
+static bool write_layout_picture(const cli_tree *tree, const char *path, const char *side) {
+    bool opaque = !(tree->options->background[3] < 1);
+    picture p;
+    if (!cli_layout_picture(tree, &p))
+        return false;
+    bool ok = (!side || strcmp(side, "off") == 0 || cli_tree_legend(tree, side, &p)) &&
+              cli_write_pixels(path, NULL, &p, opaque);
+    picture_free(&p);
     return ok;
 }
 
@@ -280,11 +239,13 @@ static bool prepare(stage *s, const view_list *views) {
 static bool render(stage *s) {
     const cli_options *options = s->options;
     view_list views;
-    if (!options->out && !options->dump && !options->timings && !options->save_camera)
+    const char *flat = options->vessel.layout[2];
+    if (!options->out && !options->dump && !options->timings && !options->save_camera && !flat)
         return true;
     if (!read_views(options, &views))
         return false;
-    bool ok = prepare(s, &views);
+    bool ok =
+        prepare(s, &views) && (!flat || write_layout_picture(&s->trees[0], flat, options->legend));
     if (ok && (options->out || options->dump || options->timings)) {
         for (uint32_t i = 0; ok && i < s->count; i++)
             ok = cli_session_open(&s->sessions[i], options->backend, &s->trees[i].scene, &s->shot,
@@ -302,14 +263,8 @@ static bool render(stage *s) {
 /* ---- report ------------------------------------------------------------------------------ */
 
 static void add_warnings(const cli_tree *tree, cJSON *list) {
-    const io_tree *read = &tree->contents.tree;
-    const sdv_tree *t = &tree->vessel.tree;
-    for (uint32_t i = 0; i < read->warning_count + t->warning_count; i++) {
-        char text[256];
-        if (i < read->warning_count)
-            snprintf(text, sizeof text, "%s", read->warnings[i]);
-        else
-            sdv_tree_warning_text(t, i - read->warning_count, text, sizeof text);
+    char text[256];
+    for (uint32_t i = 0; cli_tree_warning(tree, i, text, sizeof text); i++) {
         if (list)
             cJSON_AddItemToArray(list, cJSON_CreateString(text));
         else
@@ -374,8 +329,11 @@ static bool report(const cli_tree *tree, uint32_t count) {
                                                 (int)tree->grid.size[2]},
                                  3));
         cJSON_AddItemToObject(grid, "cell", cli_json_float(tree->grid.cell));
-        cJSON_AddNumberToObject(grid, "listed", tree->grid.id_count);
-        cJSON_AddItemToObject(grid, "seconds", cli_json_float((float)tree->grid_seconds));
+        cJSON_AddStringToObject(grid, "by", tree->by_device ? "device" : "cpu");
+        if (!tree->by_device) { /* else the device alone knows */
+            cJSON_AddNumberToObject(grid, "listed", tree->grid.id_count);
+            cJSON_AddItemToObject(grid, "seconds", cli_json_float((float)tree->grid_seconds));
+        }
     }
     if (tree->aim) {
         float least;
@@ -419,12 +377,12 @@ static bool run(stage *s) {
 
 int cli_vessel(const cli_options *options) {
     const cli_vessel_options *o = &options->vessel;
-    const char *outputs[7] = {options->out, options->dump, options->timings, options->save_camera,
-                              o->tree,      o->layout[0],  o->layout[1]};
+    const char *outputs[8] = {options->out, options->dump, options->timings, options->save_camera,
+                              o->tree,      o->layout[0],  o->layout[1],     o->layout[2]};
     cli_options panel = *options; /* of one tree's picture */
     cli_tree trees[CLI_TARGETS];
     stage s;
-    for (int i = 0; i < 7; i++) {
+    for (int i = 0; i < 8; i++) {
         if (!cli_writable(outputs[i]))
             return CLI_FAILED;
     }
@@ -434,7 +392,7 @@ int cli_vessel(const cli_options *options) {
     s.trees = trees;
     bool ok = plan(&s, &panel);
     do
-        ok = ok && cli_tree_load(&panel, s.count, &trees[s.count]);
+        ok = ok && cli_tree_load(&panel, NULL, s.count, &trees[s.count]);
     while (++s.count < o->target_count && ok);
     ok = ok && run(&s);
     for (uint32_t i = 0; i < s.count; i++) {

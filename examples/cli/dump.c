@@ -2,6 +2,8 @@
 
 #include "image.h"
 #include "report.h"
+#include "surface.h"
+#include "vessel.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -61,8 +63,10 @@ static void add_settings(cJSON *list, const lao_module *module, const void *sett
 static void add_set_settings(cJSON *object, const cli_scene *scene, const cli_set *set) {
     cJSON *list = cJSON_AddObjectToObject(object, "settings");
     add_settings(list, lao_lines_module(), &set->settings);
-    if (scene->module)
-        add_settings(list, scene->module, set->module_settings[0]);
+    for (uint32_t m = 0; m < scene->module_count; m++) {
+        if (set->module_settings[m])
+            add_settings(list, scene->modules[m], set->module_settings[m]);
+    }
 }
 
 /* What the picture shows and how; its first set's settings stand outside too, for short. */
@@ -132,6 +136,7 @@ enum { PARTS = 32, CHANNELS = 32, NAME = 32 };
 typedef struct plane {
     char name[NAME];
     float *values;
+    const image_part *part;
 } plane;
 
 struct cli_planes {
@@ -140,23 +145,20 @@ struct cli_planes {
     image_channel channels[PARTS][CHANNELS];
     plane planes[PARTS * 4 + CHANNELS];
     uint32_t part_count, plane_count, width, height; /* of the first part */
+    const char *home;                                /* the part of images of that size */
 };
 
-/* The first part for images of full size, else the part of that name, which may be new; or NULL. */
-static image_part *find_part(cli_planes *w, const char *channel, const lao_read_info *info) {
+/* The part of that name, which may be new; or NULL: there are too many. */
+static image_part *find_part(cli_planes *w, const char *name, size_t length,
+                             const lao_read_info *info) {
     uint32_t i = 0;
-    if (info->width != w->width || info->height != w->height) {
-        size_t length = strcspn(channel, ".");
-        for (i = 1; i < w->part_count; i++) {
-            if (strlen(w->part_names[i]) == length &&
-                strncmp(w->part_names[i], channel, length) == 0)
-                break;
-        }
-        if (i == PARTS)
-            return NULL;
-        snprintf(w->part_names[i], NAME, "%.*s", (int)length, channel);
-    }
-    if (i >= w->part_count) {
+    while (i < w->part_count &&
+           (strlen(w->part_names[i]) != length || strncmp(w->part_names[i], name, length) != 0))
+        i++;
+    if (i == PARTS)
+        return NULL;
+    if (i == w->part_count) {
+        snprintf(w->part_names[i], NAME, "%.*s", (int)length, name);
         w->part_count = i + 1;
         w->parts[i].width = info->width;
         w->parts[i].height = info->height;
@@ -164,6 +166,13 @@ static image_part *find_part(cli_planes *w, const char *channel, const lao_read_
         w->parts[i].channels = w->channels[i];
     }
     return &w->parts[i];
+}
+
+/* Images of another size are parts named after the image. */
+static image_part *part_of(cli_planes *w, const char *channel, const lao_read_info *info) {
+    if (info->width == w->width && info->height == w->height)
+        return find_part(w, w->home, strlen(w->home), info);
+    return find_part(w, channel, strcspn(channel, "."), info);
 }
 
 /* "axial%d.C" with the level in place. */
@@ -177,7 +186,7 @@ static void channel_name(const char *pattern, uint32_t level, char name[NAME]) {
 
 /* Room for a channel's values. NULL: reported. */
 static float *add_plane(cli_planes *w, const char *name, const lao_read_info *info) {
-    image_part *part = find_part(w, name, info);
+    image_part *part = part_of(w, name, info);
     if (!part || part->channel_count == CHANNELS ||
         w->plane_count == sizeof w->planes / sizeof *w->planes) {
         cli_fail("%s: too many channels for one file", name);
@@ -188,6 +197,7 @@ static float *add_plane(cli_planes *w, const char *name, const lao_read_info *in
     if (!p->values)
         return NULL;
     w->plane_count++;
+    p->part = part;
     snprintf(p->name, NAME, "%s", name);
     image_channel *out = &w->channels[part - w->parts][part->channel_count++];
     out->name = p->name;
@@ -236,20 +246,46 @@ static bool add_module(cli_planes *w, cli_session *session, const lao_module *mo
     return true;
 }
 
+/* The part of a module whose objects stand among others. */
+static bool add_objects(cli_planes *w, cli_session *session, const cli_scene *scene) {
+    bool ok = true;
+    for (uint32_t m = 0; ok && m < scene->module_count; m++) {
+        const cli_object *last = NULL;
+        bool trees = scene->modules[m] == sdv_module();
+        cli_planes_use(w, scene->modules[m]->name);
+        ok = add_module(w, session, scene->modules[m], false);
+        for (uint32_t i = 0; i < scene->object_count; i++) {
+            if (trees ? scene->objects[i]->tree != NULL : scene->objects[i]->wall != NULL)
+                last = scene->objects[i];
+        }
+        if (ok && last)
+            ok = trees ? cli_tree_planes(last->tree, w) : cli_wall_planes(last->wall, w);
+    }
+    cli_planes_use(w, NULL);
+    return ok;
+}
+
 static bool add_images(cli_planes *w, cli_session *session, const cli_scene *scene,
                        const cli_shot *shot) {
     uint32_t factor = (uint32_t)lao_settings_filled(&scene->sets[0].settings).supersampling;
+    bool alone = scene->module_count > 0 && scene->object_count == 0;
     w->width = (shot->width + 2 * shot->margin) * factor;
     w->height = (shot->height + 2 * shot->margin) * factor;
-    snprintf(w->part_names[0], NAME, "full");
-    return (!scene->module || add_module(w, session, scene->module, false)) &&
-           add_module(w, session, lao_lines_module(), scene->module != NULL);
+    cli_planes_use(w, NULL);
+    return (!alone || add_module(w, session, scene->modules[0], false)) &&
+           add_module(w, session, lao_lines_module(), alone) &&
+           (alone || add_objects(w, session, scene));
+}
+
+void cli_planes_use(cli_planes *planes, const char *part) {
+    planes->home = part ? part : "full";
 }
 
 float *cli_planes_find(cli_planes *planes, const char *name, size_t *count) {
     *count = (size_t)planes->width * planes->height;
     for (uint32_t i = 0; i < planes->plane_count; i++) {
-        if (strcmp(planes->planes[i].name, name) == 0)
+        if (strcmp(planes->planes[i].name, name) == 0 &&
+            strcmp(planes->planes[i].part->name, planes->home) == 0)
             return planes->planes[i].values;
     }
     return NULL;

@@ -8,6 +8,8 @@
 
 /* What a command adds to a dump, of the first part: planes of width * height values. */
 typedef struct cli_planes cli_planes;
+/* From now on channels are those of this part; NULL: of the first. */
+void cli_planes_use(cli_planes *planes, const char *part);
 /* The values of a channel, or NULL; *count gets how many there are. */
 float *cli_planes_find(cli_planes *planes, const char *name, size_t *count);
 /* A new channel, not yet filled. NULL: reported. */
@@ -17,8 +19,10 @@ typedef bool (*cli_planes_edit)(void *user, cli_planes *planes);
 /* Writes every image of the frame graph that has channel names, as 32-bit floats, top row first.
  * The images of full size are the first part; others are parts named after the image ("axial1").
  * The string attribute "lineao" describes the frame. The session's view must have been made with
- * LAO_VIEW_KEEP_IMAGES. Of a scene with a module, its images and the picture alone. edit:
- * (Optional) called with what will be written. False: reported. */
+ * LAO_VIEW_KEEP_IMAGES. Of a tree or a wall alone (lineao vessel, surface), its images and the
+ * picture; of a scene with objects those of the lines, and in parts named after their modules
+ * ("vessel", "surface") those of the objects, of several the last one's. edit: (Optional) called
+ * with what will be written. False: reported. */
 bool cli_dump(const char *path, cli_session *session, const cli_scene *scene, const cli_shot *shot,
               cli_planes_edit edit, void *user);
 

@@ -1,6 +1,8 @@
 #include "legends.h"
 
 #include "report.h"
+#include "surface.h"
+#include "vessel.h"
 
 #include <stdio.h>
 #include <stdlib.h>
@@ -16,7 +18,15 @@ static const char *unit_of(const char *attribute) {
     return NULL;
 }
 
-enum { MOST = 8, OF_SETS = 4, TITLE = 128 };
+enum { GIVEN = 4, SCALES = 8, TITLE = 160 };
+
+/* Scales under way: what they show is kept here. */
+typedef struct scales {
+    colour_map maps[SCALES];
+    char titles[SCALES][TITLE];
+    legend list[GIVEN + SCALES];
+    uint32_t count, made; /* made: of them here */
+} scales;
 
 /* Do the colours of a set tell what those of an earlier one tell, or nothing? */
 static bool is_known(const cli_scene *scene, uint32_t set) {
@@ -26,37 +36,53 @@ static bool is_known(const cli_scene *scene, uint32_t set) {
     return known;
 }
 
+static void add_set(scales *s, const cli_set *set) {
+    const char *unit = unit_of(set->value);
+    char *title = s->titles[s->made];
+    snprintf(title, TITLE, "%s%s%s%s", set->value, unit ? " (" : "", unit ? unit : "",
+             unit ? ")" : "");
+    colour_map_make(set->source->colormap, &s->maps[s->made]); /* the flag's choices are names */
+    s->list[s->count++] = (legend){&s->maps[s->made++], {set->range[0], set->range[1]}, title};
+}
+
+/* Trees by a number, walls by near flow or an array. */
+static void add_object(scales *s, const cli_object *object) {
+    uint32_t count = 0;
+    if (object->tree)
+        count =
+            cli_tree_scale(object->tree, &s->maps[s->made], s->titles[s->made], &s->list[s->count]);
+    else if (s->made + 2 <= SCALES)
+        count = cli_wall_scales(object->wall, &s->maps[s->made], &s->titles[s->made],
+                                &s->list[s->count]);
+    s->made += count;
+    s->count += count;
+}
+
 bool cli_legends_draw(const cli_options *options, const cli_scene *scene, const legend *more,
                       uint32_t more_count, picture *p) {
     static const char *const sides[] = {"left", "right", "bottom"};
-    char titles[OF_SETS][TITLE];
-    legend legends[MOST];
-    uint32_t count = 0, side = 0;
+    uint32_t side = 0;
     while (side < 3 && strcmp(sides[side], options->legend) != 0)
         side++;
     if (side == 3)
         return true; /* off */
-    colour_map *maps = cli_new(OF_SETS, sizeof *maps);
-    for (; maps && count < more_count; count++)
-        legends[count] = more[count];
-    for (uint32_t s = 0; maps && s < scene->count && count < more_count + OF_SETS; s++) {
-        const cli_set *set = &scene->sets[s];
-        if (is_known(scene, s))
-            continue;
-        const char *unit = unit_of(set->value);
-        char *title = titles[count - more_count];
-        colour_map *map = &maps[count - more_count];
-        snprintf(title, TITLE, "%s%s%s%s", set->value, unit ? " (" : "", unit ? unit : "",
-                 unit ? ")" : "");
-        colour_map_make(set->source->colormap, map); /* the flag's choices are its names */
-        legends[count].map = map;
-        memcpy(legends[count].range, set->range, sizeof set->range);
-        legends[count++].title = title;
+    scales *s = cli_new(1, sizeof *s);
+    if (!s)
+        return false;
+    s->count = s->made = 0;
+    while (s->count < more_count) {
+        s->list[s->count] = more[s->count];
+        s->count++;
     }
-    if (count && options->legend_title)
-        legends[0].title = options->legend_title;
-    bool ok =
-        maps && (legend_draw(p, (legend_side)side, legends, count) || cli_fail("out of memory"));
-    free(maps);
+    for (uint32_t i = 0; i < scene->count && s->made < SCALES; i++) {
+        if (!is_known(scene, i))
+            add_set(s, &scene->sets[i]);
+    }
+    for (uint32_t i = 0; i < scene->object_count && s->made < SCALES; i++)
+        add_object(s, scene->objects[i]);
+    if (s->count && options->legend_title)
+        s->list[0].title = options->legend_title;
+    bool ok = legend_draw(p, (legend_side)side, s->list, s->count) || cli_fail("out of memory");
+    free(s);
     return ok;
 }

@@ -5,8 +5,9 @@
 #include "legend.h"
 #include "load.h"
 
-/* Draws the legends of the sets' colours at the side that --legend names, unless that is "off", and
- * `more` (at most 4) before them. --legend-title is the first one's. False: reported. */
+/* Draws the legends of the sets' and objects' colours at the side that --legend names, unless that
+ * is "off", and `more` (at most 4) before them. --legend-title is the first one's. False: reported.
+ */
 bool cli_legends_draw(const cli_options *options, const cli_scene *scene, const legend *more,
                       uint32_t more_count, picture *p);
 

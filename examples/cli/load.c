@@ -6,6 +6,8 @@
 #include "flow4d.h"
 #include "report.h"
 #include "scene.h"
+#include "surface.h"
+#include "vessel.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -83,24 +85,6 @@ static bool adopt(scene_lines *scene, io_lines *lines) {
            add_attribute(lines, "speed", &scene->values);
 }
 
-static bool load_embedded(const cli_options *options, cli_set *set, cli_scene *out) {
-    scene_lines scene;
-    uint32_t count;
-    set->name = options->scene ? options->scene : scene_names(&count)[0];
-    if (!scene_make(set->name, options->lines, 0, &scene))
-        return cli_fail("%s: out of memory; ask for fewer --lines", set->name);
-    if (!(set->settings.set & LAO_SET(width))) {
-        set->settings.width = scene.width;
-        set->settings.set |= LAO_SET(width);
-    }
-    memcpy(out->direction, scene.view_direction, sizeof out->direction);
-    memcpy(out->up, scene.up, sizeof out->up);
-    bool ok = adopt(&scene, &set->lines) &&
-              (!options->backdrop || cli_context_keep_embedded(out, set->name));
-    scene_free(&scene);
-    return ok && cli_go_on();
-}
-
 /* ---- sets ------------------------------------------------------------------------------- */
 
 /* Expresses the points of a set around the common origin. */
@@ -163,6 +147,8 @@ static bool follow_time(const cli_options *options, cli_scene *scene) {
         bool told = (s->set & LAO_SET(trail)) || s->trail > 0;
         const lao_setting_row *beta = &lao_lines_module()->settings[LAO_SETTING_ID_highlight_beta];
         any = any || set->times;
+        if (set->object)
+            continue;
         if (told && s->trail > 0 && !set->times)
             return cli_fail("%s: trail needs the point array 'time' (ms), which this set has not",
                             set->name);
@@ -180,13 +166,162 @@ static bool follow_time(const cli_options *options, cli_scene *scene) {
                     scene->sets[0].name, isnan(options->time) ? "--frames" : "--time");
 }
 
-static bool load_traced(const cli_options *options, const cli_source *first, uint32_t count,
-                        cli_set *set, cli_scene *out) {
-    io_volume volume;
-    lao_settings *s = &set->settings;
-    if (!cli_read_volume(options, first, count, false, &volume))
+/* ---- what a FILE is drawn as ------------------------------------------------------------ */
+
+/* A set that is not yet filled. NULL: reported. */
+static cli_set *add_set(const cli_source *source, const char *name, cli_scene *out) {
+    cli_set *set = cli_scene_add(out);
+    if (!set)
+        return NULL;
+    set->source = source;
+    set->name = name;
+    set->settings = source->settings;
+    return set;
+}
+
+/* Puts the last set's lines about the scene's origin and into its time. */
+static void place_lines(cli_scene *out) {
+    cli_set *set = &out->sets[out->count - 1];
+    if (out->count == 1)
+        memcpy(out->origin, set->lines.origin, sizeof out->origin);
+    move_origin(&set->lines, out->origin);
+    find_times(set, out);
+}
+
+static bool add_lines(const cli_options *options, const cli_source *source, io_contents *contents,
+                      cli_scene *out) {
+    (void)options;
+    if (source->unit)
+        return cli_fail("--unit: is for trees, meshes and volumes, and %s is drawn as lines",
+                        source->path);
+    cli_set *set = add_set(source, source->path, out);
+    if (!set)
         return false;
-    bool ok = cli_trace(options, set->source, set->name, &volume, &set->lines);
+    set->lines = contents->lines;
+    memset(&contents->lines, 0, sizeof contents->lines); /* moved */
+    place_lines(out);
+    return true;
+}
+
+/* An object that is not yet filled. NULL: reported. */
+static cli_object *add_object(const cli_options *options, const cli_source *source,
+                              cli_scene *out) {
+    cli_object **objects = realloc(out->objects, (out->object_count + 1) * sizeof *objects);
+    cli_object *object = objects ? calloc(1, sizeof *object) : NULL;
+    if (objects)
+        out->objects = objects;
+    if (!object) {
+        cli_fail("out of memory");
+        return NULL;
+    }
+    object->options = *options;
+    object->options.files = (cli_source *)(uintptr_t)source; /* is only read */
+    object->options.file_count = 1;
+    return out->objects[out->object_count++] = object;
+}
+
+static bool add_tree(const cli_options *options, const cli_source *source, io_contents *contents,
+                     cli_scene *out) {
+    const cli_place place = {contents, out->count ? out->origin : NULL};
+    cli_object *object = add_object(options, source, out);
+    if (!object || !(object->tree = cli_new(1, sizeof *object->tree)))
+        return false;
+    return cli_tree_load(&object->options, &place, 0, object->tree) &&
+           cli_tree_prepare(object->tree) && cli_scene_join(out, &object->tree->scene);
+}
+
+/* Its --color is an array of its vertices. */
+static bool add_wall(const cli_options *options, const cli_source *source, io_contents *contents,
+                     cli_scene *out) {
+    const cli_place place = {contents, out->count ? out->origin : NULL};
+    cli_object *object = add_object(options, source, out);
+    if (!object || !(object->wall = cli_new(1, sizeof *object->wall)))
+        return false;
+    object->options.surface.value = source->color;
+    return cli_wall_load(&object->options, &place, object->wall) &&
+           cli_scene_join(out, &object->wall->scene);
+}
+
+/* What --as names; without it the first that the content of a FILE makes. */
+typedef struct kind_row {
+    const char *name;
+    unsigned content; /* what it can be made of: IO_LINES, ... */
+    bool (*add)(const cli_options *options, const cli_source *source, io_contents *contents,
+                cli_scene *out);
+} kind_row;
+static const kind_row kinds[] = {
+    {"lines", IO_LINES, add_lines},
+    {"tree", IO_TREE, add_tree},
+    {"surface", IO_MESH | IO_TREE, add_wall},
+};
+
+static const kind_row *kind_of(const cli_source *source, unsigned content) {
+    const kind_row *row = kinds;
+    while (source->as ? strcmp(source->as, row->name) != 0 : !(row->content & content))
+        row++;
+    return row;
+}
+
+/* What else the file holds is left out, and what was said of it. */
+static bool read_kind(const cli_source *source, const kind_row **row, io_contents *contents) {
+    unsigned wanted = source->as ? kind_of(source, 0)->content : (unsigned)IO_ANYTHING;
+    if (!cli_read(source, wanted, contents))
+        return false;
+    *row = kind_of(source, contents->kinds);
+    if (!(contents->kinds & ~(*row)->content))
+        return true;
+    io_contents_free(contents);
+    return cli_read(source, (*row)->content, contents);
+}
+
+static bool load_file(const cli_options *options, const cli_source *source, cli_scene *out) {
+    const kind_row *row;
+    io_contents contents;
+    if (!read_kind(source, &row, &contents))
+        return false;
+    bool ok = row->add(options, source, &contents, out);
+    io_contents_free(&contents);
+    return ok && cli_go_on();
+}
+
+static bool load_embedded(const cli_options *options, const cli_source *source, cli_scene *out) {
+    scene_lines scene;
+    uint32_t count;
+    const char *name = options->scene ? options->scene : scene_names(&count)[0];
+    cli_set *set = add_set(source, name, out);
+    if (!set)
+        return false;
+    if (!scene_make(name, options->lines, 0, &scene))
+        return cli_fail("%s: out of memory; ask for fewer --lines", name);
+    if (!(set->settings.set & LAO_SET(width))) {
+        set->settings.width = scene.width;
+        set->settings.set |= LAO_SET(width);
+    }
+    memcpy(out->direction, scene.view_direction, sizeof out->direction);
+    memcpy(out->up, scene.up, sizeof out->up);
+    bool ok =
+        adopt(&scene, &set->lines) && (!options->backdrop || cli_context_keep_embedded(out, name));
+    scene_free(&scene);
+    place_lines(out);
+    return ok && cli_go_on();
+}
+
+/* `count` sources from the first on are one volume; its look is that of the last. */
+static bool load_volume(const cli_options *options, const cli_source *first, uint32_t count,
+                        cli_scene *out) {
+    io_volume volume;
+    cli_options own = *options;
+    const cli_source *source = first + count - 1;
+    own.flow.unit = options->flow.unit ? options->flow.unit : source->unit;
+    if (source->as && strcmp(source->as, "lines") != 0)
+        return cli_fail("--as: %s is a velocity volume, which is drawn as lines; lineao surface "
+                        "draws its wall",
+                        first->path);
+    cli_set *set = add_set(source, first->path, out);
+    if (!set || !cli_read_volume(&own, first, count, false, &volume))
+        return false;
+    lao_settings *s = &set->settings;
+    bool ok = cli_trace(options, source, set->name, &volume, &set->lines);
     if (!(s->set & LAO_SET(period)) && !(s->period > 0)) { /* its trails repeat as the blood does */
         s->period = (float)volume.period;
     }
@@ -195,29 +330,9 @@ static bool load_traced(const cli_options *options, const cli_source *first, uin
         ok = cli_context_keep(out, &field);
     }
     io_volume_free(&volume);
+    if (ok)
+        place_lines(out);
     return ok && cli_go_on();
-}
-
-/* volumes: how many sources from `first` on are one volume; its look is that of the last. */
-static bool load_set(const cli_options *options, const cli_source *first, uint32_t volumes,
-                     cli_scene *out) {
-    const cli_source *source = volumes ? first + volumes - 1 : first;
-    cli_set *set = &out->sets[out->count];
-    memset(set, 0, sizeof *set);
-    set->source = source;
-    set->name = first->path;
-    set->settings = source->settings;
-    out->count++; /* freed with the scene from here on */
-    bool ok = volumes        ? load_traced(options, first, volumes, set, out)
-              : source->path ? cli_read_file(source, &set->lines)
-                             : load_embedded(options, set, out);
-    if (!ok)
-        return false;
-    if (out->count == 1)
-        memcpy(out->origin, set->lines.origin, sizeof out->origin);
-    move_origin(&set->lines, out->origin);
-    find_times(set, out);
-    return true;
 }
 
 static bool load_outline(const cli_options *options, cli_scene *scene) {
@@ -242,26 +357,46 @@ static bool load_outline(const cli_options *options, cli_scene *scene) {
     return true;
 }
 
+/* Sets of lines stand first: what belongs to the whole picture is the first set's. */
+static bool sort_sets(cli_scene *scene) {
+    cli_set *sorted = cli_new(scene->count, sizeof *sorted);
+    uint32_t done = 0;
+    for (int pass = 0; sorted && pass < 2; pass++) {
+        for (uint32_t i = 0; i < scene->count; i++) {
+            if ((scene->sets[i].object != NULL) == (pass == 1))
+                sorted[done++] = scene->sets[i];
+        }
+    }
+    if (!sorted)
+        return false;
+    free(scene->sets);
+    scene->sets = sorted;
+    return true;
+}
+
+/* All FILEs, or the embedded scene. */
+static bool load_all(const cli_options *options, cli_scene *scene) {
+    uint32_t any = 0;
+    if (!options->file_count && !load_embedded(options, &options->all, scene))
+        return false;
+    for (uint32_t i = 0, volumes; i < options->file_count; i += volumes ? volumes : 1) {
+        volumes = cli_count_volumes(options->files, options->file_count, i);
+        any += volumes;
+        if (!(volumes ? load_volume(options, &options->files[i], volumes, scene)
+                      : load_file(options, &options->files[i], scene)))
+            return false;
+    }
+    return any || !options->flow_flag ||
+           cli_fail("%s: is for velocity volumes, and no FILE is one", options->flow_flag);
+}
+
 bool cli_scene_load(const cli_options *options, cli_scene *out) {
-    uint32_t count = options->file_count ? options->file_count : 1;
     cli_scene scene;
     memset(&scene, 0, sizeof scene);
     scene.beat[0] = INFINITY;
     scene.beat[1] = -INFINITY;
     camera_view("iso", scene.direction, scene.up);
-    scene.sets = cli_new(count, sizeof *scene.sets);
-    if (!scene.sets)
-        return false;
-    const cli_source *sources = options->file_count ? options->files : &options->all;
-    uint32_t any = 0;
-    bool ok = true;
-    for (uint32_t i = 0, volumes; ok && i < count; i += volumes ? volumes : 1) {
-        volumes = cli_count_volumes(sources, count, i);
-        any += volumes;
-        ok = load_set(options, &sources[i], volumes, &scene);
-    }
-    if (ok && !any && options->flow_flag)
-        ok = cli_fail("%s: is for velocity volumes, and no FILE is one", options->flow_flag);
+    bool ok = load_all(options, &scene) && sort_sets(&scene);
     if (scene.beat[0] > scene.beat[1])
         scene.beat[0] = scene.beat[1] = 0;
     if (!ok || !follow_time(options, &scene) || !cli_colour(&scene) ||
@@ -275,6 +410,16 @@ bool cli_scene_load(const cli_options *options, cli_scene *out) {
     return true;
 }
 
+static void free_object(cli_object *object) {
+    if (object->tree)
+        cli_tree_free(object->tree);
+    if (object->wall)
+        cli_wall_free(object->wall);
+    free(object->tree);
+    free(object->wall);
+    free(object);
+}
+
 void cli_scene_free(cli_scene *scene) {
     for (uint32_t i = 0; i < scene->count; i++) {
         io_lines_free(&scene->sets[i].lines);
@@ -284,6 +429,9 @@ void cli_scene_free(cli_scene *scene) {
         free(scene->volumes[i].fastest);
         free(scene->volumes[i].inside);
     }
+    for (uint32_t i = 0; i < scene->object_count; i++)
+        free_object(scene->objects[i]);
+    free(scene->objects);
     free(scene->volumes);
     free(scene->outline.positions);
     free(scene->outline.triangles);
@@ -302,9 +450,46 @@ cli_set *cli_scene_add(cli_scene *scene) {
     return &sets[scene->count++];
 }
 
+/* Where a module stands among those of a scene, which it joins. */
+static uint32_t use_module(cli_scene *scene, const lao_module *module) {
+    uint32_t i = 0;
+    while (i < scene->module_count && scene->modules[i] != module)
+        i++;
+    if (i == scene->module_count)
+        scene->modules[scene->module_count++] = module;
+    return i;
+}
+
+bool cli_scene_join(cli_scene *scene, cli_scene *part) {
+    if (!scene->count)
+        memcpy(scene->origin, part->origin, sizeof scene->origin);
+    for (uint32_t i = 0; i < part->count; i++) {
+        cli_set *from = &part->sets[i], *to = cli_scene_add(scene);
+        if (!to)
+            return false;
+        *to = *from;
+        memset(to->module_settings, 0, sizeof to->module_settings);
+        for (uint32_t m = 0; m < part->module_count; m++)
+            to->module_settings[use_module(scene, part->modules[m])] = from->module_settings[m];
+        memset(from, 0, sizeof *from); /* moved */
+    }
+    free(part->sets);
+    part->sets = NULL;
+    part->count = 0;
+    return true;
+}
+
 void cli_scene_warn(const cli_scene *scene) {
+    char text[512];
     for (uint32_t i = 0; i < scene->count; i++) {
         for (uint32_t w = 0; w < scene->sets[i].lines.warning_count; w++)
             cli_warn(scene->sets[i].name, scene->sets[i].lines.warnings[w]);
+    }
+    for (uint32_t i = 0; i < scene->object_count; i++) {
+        const cli_object *o = scene->objects[i];
+        for (uint32_t w = 0; o->tree && cli_tree_warning(o->tree, w, text, sizeof text); w++)
+            cli_warn(o->tree->name, text);
+        for (uint32_t w = 0; o->wall && cli_wall_warning(o->wall, w, text, sizeof text); w++)
+            cli_warn(o->wall->name, text);
     }
 }

@@ -1,9 +1,11 @@
-/* FILEs and embedded scenes as line sets with colours, around one origin. */
+/* FILEs of any kinds, and embedded scenes, as sets around one origin. */
 #ifndef LINEAO_CLI_LOAD_H
 #define LINEAO_CLI_LOAD_H
 
 #include "arguments.h"
 #include "io_read.h"
+
+enum { CLI_MODULES = 2 }; /* besides that of the lines */
 
 typedef struct cli_set {
     const cli_source *source;
@@ -15,10 +17,26 @@ typedef struct cli_set {
     const char *value;  /* name of the attribute that `colors` show, or NULL */
     double range[2];    /* its values at both ends of the source's colour map */
     lao_settings settings;
-    /* Of a vessel tree; its `lines` are points alone, which tell how far it reaches. */
-    const lao_object_desc *object;  /* NULL: a set of lines */
-    const void *module_settings[1]; /* of cli_scene.module */
+    bool overlay; /* made of another set for a camera: does not say how far the scene reaches */
+    /* Of a vessel tree or a wall; its `lines` are points alone, which tell how far it reaches. */
+    const lao_object_desc *object;            /* NULL: a set of lines */
+    const void *module_settings[CLI_MODULES]; /* of cli_scene.modules; NULL: none */
+    struct cli_tree *tree;                    /* that the object is of, or NULL */
+    struct cli_wall *wall;                    /* likewise */
 } cli_set;
+
+/* A FILE of a scene that is no set of lines: one of both. */
+typedef struct cli_object {
+    cli_options options; /* the program's, as though this FILE stood alone */
+    struct cli_tree *tree;
+    struct cli_wall *wall;
+} cli_object;
+
+/* For those who make an object of a FILE that was read already. */
+typedef struct cli_place {
+    io_contents *contents; /* is moved */
+    const double *origin;  /* of the scene, mm; NULL: the object's own */
+} cli_place;
 
 /* What --backdrop shows of a velocity volume: size[0] * size[1] * size[2] voxels, x fastest. */
 typedef struct cli_volume {
@@ -37,9 +55,12 @@ typedef struct cli_outline {
 
 /* Everything that is drawn. Points are relative to `origin`, which is the first set's. */
 typedef struct cli_scene {
-    const lao_module *module; /* NULL: lines alone */
-    cli_set *sets;            /* owned */
+    const lao_module *modules[CLI_MODULES]; /* that its objects want */
+    uint32_t module_count;
+    cli_set *sets; /* owned; those of lines first, but for lineao surface */
     uint32_t count;
+    cli_object **objects; /* owned; in order of the FILEs */
+    uint32_t object_count;
     double origin[3];
     float direction[3], up[3]; /* of the automatic camera */
     cli_volume *volumes;       /* owned; none unless --backdrop asks for them */
@@ -55,6 +76,8 @@ void cli_scene_free(cli_scene *scene);
 
 /* One more set behind those of a scene, all zero; it may move them. NULL: reported. */
 cli_set *cli_scene_add(cli_scene *scene);
+/* Moves all sets of `part` behind those of a scene. False: reported. */
+bool cli_scene_join(cli_scene *scene, cli_scene *part);
 
 /* Prints the warnings of all files. */
 void cli_scene_warn(const cli_scene *scene);

@@ -97,20 +97,24 @@ const char *cli_session_device(const cli_session *session) {
 
 /* ---- life ------------------------------------------------------------------------------- */
 
+static lao_lines_desc describe_lines(const cli_set *set) {
+    lao_lines_desc desc;
+    memset(&desc, 0, sizeof desc);
+    desc.line_count = set->lines.line_count;
+    desc.point_count = set->lines.point_count;
+    desc.offsets = set->lines.offsets;
+    desc.points = set->lines.points;
+    desc.times = set->times;
+    desc.colors = set->colors;
+    memcpy(desc.color, set->color, sizeof desc.color);
+    return desc;
+}
+
 static bool upload(cli_session *session, const cli_scene *scene) {
     session->sets = cli_new(scene->count, sizeof *session->sets);
     for (uint32_t i = 0; session->sets && i < scene->count; i++) {
         const cli_set *set = &scene->sets[i];
-        lao_lines_desc desc;
-        memset(&session->sets[i], 0, sizeof session->sets[i]);
-        memset(&desc, 0, sizeof desc);
-        desc.line_count = set->lines.line_count;
-        desc.point_count = set->lines.point_count;
-        desc.offsets = set->lines.offsets;
-        desc.points = set->lines.points;
-        desc.times = set->times;
-        desc.colors = set->colors;
-        memcpy(desc.color, set->color, sizeof desc.color);
+        lao_lines_desc desc = describe_lines(set);
         memset(&session->sets[i], 0, sizeof session->sets[i]);
         session->sets[i].settings = &set->settings;
         if (!set->object &&
@@ -123,6 +127,11 @@ static bool upload(cli_session *session, const cli_scene *scene) {
     }
     session->set_count = scene->count;
     return session->sets != NULL;
+}
+
+bool cli_session_renew(cli_session *session, const cli_scene *scene, uint32_t set) {
+    lao_lines_desc desc = describe_lines(&scene->sets[set]);
+    return lao_lines_update(session->context, session->sets[set].lines, &desc) == LAO_OK;
 }
 
 bool cli_session_open(cli_session *session, const char *backend, const cli_scene *scene,
@@ -143,8 +152,8 @@ bool cli_session_start(cli_session *session, const lao_backend *functions, const
     desc.backend = functions;
     desc.logger.log = on_log;
     desc.logger.user = session;
-    desc.modules = &scene->module;
-    desc.module_count = scene->module ? 1 : 0;
+    desc.modules = scene->modules;
+    desc.module_count = scene->module_count;
     size.width = shot->width + 2 * shot->margin;
     size.height = shot->height + 2 * shot->margin;
     session->margin = shot->margin;

@@ -21,6 +21,10 @@ bool cli_shot_make(const cli_options *options, const cli_scene *scene, cli_shot 
 /* Matrices of shot->camera, when the caller has changed it. */
 void cli_shot_aim(const cli_scene *scene, cli_shot *shot);
 
+/* The camera turned around its up vector through the point that it looks at, by a part of a turn:
+ * frames of a video of a tree. */
+void cli_turn(const camera_pose *from, double part, camera_pose *out);
+
 typedef struct cli_session {
     const char *backend; /* "gl" or "vk" */
     struct host_gl *gl;
@@ -44,6 +48,8 @@ void cli_session_close(cli_session *session);
  * all zero but for `backend` and, where cli_session_render is wanted, `vk`. */
 bool cli_session_start(cli_session *session, const lao_backend *functions, const cli_scene *scene,
                        const cli_shot *shot, uint32_t view_flags);
+/* Uploads the lines of one set of the scene again. False: reported. */
+bool cli_session_renew(cli_session *session, const cli_scene *scene, uint32_t set);
 /* What cli_session_render hands to lao_render; borrows the session's sets. */
 void cli_session_frame(const cli_session *session, const cli_shot *shot, uint32_t frame_flags,
                        lao_frame *out);

@@ -63,7 +63,9 @@ void sheet_free(cli_sheet *sheet) {
 static uint32_t draw_lines(picture *page, uint32_t x, uint32_t y, uint32_t width, const char *text,
                            const text_style *style) {
     uint32_t line = (uint32_t)ceil(1.15 * style->size), height = 0;
-    for (text = text ? text : ""; *text;) {
+    if (!text)
+        return 0;
+    while (*text) {
         char part[512];
         uint32_t bytes = text_fit(text, width, style);
         snprintf(part, sizeof part, "%.*s", (int)bytes, text);

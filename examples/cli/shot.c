@@ -13,6 +13,8 @@ static void find_sphere(const cli_scene *scene, float sphere[4]) {
     for (uint32_t s = 0; s < scene->count; s++) {
         const io_lines *lines = &scene->sets[s].lines;
         lao_settings settings = lao_settings_filled(&scene->sets[s].settings);
+        if (scene->sets[s].overlay)
+            continue;
         widest = settings.width > widest ? settings.width : widest;
         for (uint32_t i = 0; i < lines->point_count; i++) {
             const float *p = lines->points + 3 * (size_t)i;
@@ -36,8 +38,10 @@ static void fit_camera(const cli_options *options, const cli_scene *scene, doubl
                        camera_pose *out) {
     camera_fit fit;
     camera_fit_begin(&fit, scene->direction, scene->up, aspect, 0.05, options->ortho ? 0 : 30);
-    for (uint32_t s = 0; s < scene->count; s++)
-        camera_fit_add(&fit, scene->sets[s].lines.points, scene->sets[s].lines.point_count);
+    for (uint32_t s = 0; s < scene->count; s++) {
+        if (!scene->sets[s].overlay)
+            camera_fit_add(&fit, scene->sets[s].lines.points, scene->sets[s].lines.point_count);
+    }
     camera_fit_add(&fit, scene->outline.positions, scene->outline.vertex_count);
     camera_fit_end(&fit, out);
     for (int k = 0; k < 3; k++) {
@@ -56,8 +60,10 @@ void cli_shot_aim(const cli_scene *scene, cli_shot *shot) {
         center[k] = shot->sphere[k];
     }
     float widest = 0; /* a ribbon reaches out of the ball of its points */
-    for (uint32_t s = 0; s < scene->count; s++)
-        widest = fmaxf(widest, lao_settings_filled(&scene->sets[s].settings).width);
+    for (uint32_t s = 0; s < scene->count; s++) {
+        if (!scene->sets[s].overlay)
+            widest = fmaxf(widest, lao_settings_filled(&scene->sets[s].settings).width);
+    }
     camera_matrices(&local, (double)shot->width / shot->height, center,
                     (double)shot->sphere[3] + widest, true, shot->view, shot->projection);
     if (shot->margin) {
@@ -91,4 +97,22 @@ bool cli_shot_make(const cli_options *options, const cli_scene *scene, cli_shot 
         return cli_fail("%s", error);
     cli_shot_aim(scene, out);
     return true;
+}
+
+void cli_turn(const camera_pose *from, double part, camera_pose *out) {
+    double angle = 6.283185307179586 * part, c = cos(angle), s = sin(angle), size = 0, along = 0;
+    double axis[3], arm[3];
+    *out = *from;
+    for (int k = 0; k < 3; k++)
+        size += from->up[k] * from->up[k];
+    for (int k = 0; k < 3; k++) {
+        axis[k] = from->up[k] / sqrt(size);
+        arm[k] = from->eye[k] - from->center[k];
+        along += axis[k] * arm[k];
+    }
+    for (int k = 0; k < 3; k++) {
+        int i = (k + 1) % 3, j = (k + 2) % 3;
+        double across = axis[i] * arm[j] - axis[j] * arm[i];
+        out->eye[k] = from->center[k] + c * arm[k] + s * across + (1 - c) * along * axis[k];
+    }
 }

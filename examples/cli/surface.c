@@ -284,7 +284,7 @@ static void take_map(cli_wall *wall) {
 
 /* ---- scene ------------------------------------------------------------------------------ */
 
-/* A set for the surface before that of the lines: effects are the first set's. */
+/* A set for the surface before that of the lines. */
 static bool add_set(cli_wall *wall) {
     cli_scene *scene = &wall->scene;
     cli_set *sets = cli_new(scene->count + 1u, sizeof *sets);
@@ -296,7 +296,7 @@ static bool add_set(cli_wall *wall) {
     free(scene->sets);
     scene->sets = sets;
     scene->count++;
-    scene->module = vsf_module();
+    scene->modules[scene->module_count++] = vsf_module();
     sets->source = wall->source;
     sets->name = wall->name;
     sets->settings = wall->source->settings;
@@ -311,6 +311,7 @@ static bool fill_set(cli_wall *wall) {
     cli_set *set = wall->scene.sets;
     io_lines *lines = &set->lines; /* points alone, which tell how far the surface reaches */
     set->object = &wall->object.desc;
+    set->wall = wall;
     lines->points = cli_new(wall->mesh.vertex_count, 3 * sizeof *lines->points);
     if (!lines->points)
         return false;
@@ -323,7 +324,7 @@ static bool fill_set(cli_wall *wall) {
 
 /* ---- what depends on the camera --------------------------------------------------------- */
 
-static void focus(cli_wall *wall, const cli_shot *shot) {
+void cli_wall_focus(cli_wall *wall, const cli_shot *shot) {
     const cli_surface_options *o = &wall->options->surface;
     const double *at = o->focus_at;
     double depth = -(double)shot->view[14];
@@ -385,18 +386,32 @@ static void even_out(float *points, uint32_t count) {
     }
 }
 
-/* Flat ink, a line's width before the wall that it lies on. Shorter lines than `least` (mm) are
- * left out, and longer ones evened out if there is such a bound. */
-static bool fill_contours(cli_set *set, const vsf_polylines *lines, const float eye[4],
-                          double width, double least) {
+/* Of contours: flat ink. NULL: reported. */
+static cli_set *add_ink(cli_wall *wall, double width) {
     static const float ink[4] = {0.1f, 0.1f, 0.12f, 1};
+    cli_set *set = cli_scene_add(&wall->scene);
+    if (!set)
+        return NULL;
     lao_settings *s = &set->settings;
-    io_lines *out = &set->lines;
+    set->source = wall->source;
+    set->name = wall->name;
+    set->module_settings[0] = &wall->settings;
+    set->overlay = true;
     memcpy(set->color, ink, sizeof ink);
     s->width = (float)width;
     s->ambient = 1;
     s->set = LAO_SET(width) | LAO_SET(ambient) | LAO_SET(diffuse) | LAO_SET(specular) |
              LAO_SET(occlusion) | LAO_SET(halo);
+    return set;
+}
+
+/* In place of what the set had, a line's width before the wall that it lies on. Shorter lines than
+ * `least` (mm) are left out, and longer ones evened out if there is such a bound. */
+static bool fill_contours(cli_set *set, const vsf_polylines *lines, const float eye[4],
+                          double width, double least) {
+    io_lines *out = &set->lines;
+    io_lines_free(out);
+    memset(out, 0, sizeof *out);
     out->offsets = cli_new(lines->line_count + 1u, sizeof *out->offsets);
     out->points = cli_new(lines->point_count, 3 * sizeof *out->points);
     if (!out->offsets || !out->points)
@@ -435,21 +450,18 @@ static bool add_contours(cli_wall *wall, const float eye[4], vsf_feature feature
     if (vsf_feature_lines(&wall->host, &wall->mesh, &wall->object.buffers, eye, feature,
                           (float)threshold, &lines) != LAO_OK)
         return false;
-    cli_set *set = cli_scene_add(&wall->scene);
-    bool ok = set != NULL;
-    if (ok) {
-        set->source = wall->source;
-        set->name = wall->name;
-        set->module_settings[0] = &wall->settings;
-        ok = fill_contours(set, &lines, eye, width, least);
-    }
+    uint32_t *at = &wall->contours[feature];
+    cli_set *set = *at ? &wall->scene.sets[*at] : add_ink(wall, width);
+    if (set)
+        *at = (uint32_t)(set - wall->scene.sets);
+    bool ok = set && fill_contours(set, &lines, eye, width, least);
     vsf_polylines_free(&lines);
     return ok;
 }
 
 bool cli_wall_aim(cli_wall *wall, const cli_shot *shot) {
     float eye[4];
-    focus(wall, shot);
+    cli_wall_focus(wall, shot);
     cli_wall_eye(shot, eye);
     return add_contours(wall, eye, VSF_CONTOURS) &&
            add_contours(wall, eye, VSF_SUGGESTIVE_CONTOURS);
@@ -467,29 +479,83 @@ static void fill_hues(float y, colour_map *map) {
     }
 }
 
-bool cli_wall_legends(void *user, picture *p) {
-    cli_wall *wall = user;
+uint32_t cli_wall_scales(cli_wall *wall, colour_map maps[2], char titles[2][160], legend out[2]) {
     bool value = wall->mesh.attribute_count > 0, map = wall->options->surface.colormap != NULL;
     bool any = (value || wall->lit) && !wall->options->surface.baseline;
     uint32_t count = !any ? 0 : map ? 1 : 2;
     const char *name = value ? wall->options->surface.value : "mm to flow";
-    char titles[2][160];
-    legend list[2];
-    colour_map *hues = cli_new(2, sizeof *hues);
-    for (uint32_t i = 0; hues && i < count; i++) {
+    for (uint32_t i = 0; i < count; i++) {
         snprintf(titles[i], sizeof titles[i], "%s", i ? "concave" : name);
         if (!map)
-            fill_hues(i ? -1.0f : 1.0f, &hues[i]);
-        list[i] =
-            (legend){map ? &wall->map : &hues[i], {wall->range[0], wall->range[1]}, titles[i]};
+            fill_hues(i ? -1.0f : 1.0f, &maps[i]);
+        out[i] = (legend){map ? &wall->map : &maps[i], {wall->range[0], wall->range[1]}, titles[i]};
         if (!value) { /* what is near is at the end of the map */
-            list[i].range[0] = (double)wall->settings.near_gamma;
-            list[i].range[1] = 0;
+            out[i].range[0] = (double)wall->settings.near_gamma;
+            out[i].range[1] = 0;
         }
     }
-    bool ok = hues && cli_legends_draw(wall->options, &wall->scene, list, count, p);
-    free(hues);
+    return count;
+}
+
+bool cli_wall_legends(void *user, picture *p) {
+    cli_wall *wall = user;
+    char titles[2][160];
+    legend list[2];
+    colour_map *maps = cli_new(2, sizeof *maps);
+    uint32_t count = maps ? cli_wall_scales(wall, maps, titles, list) : 0;
+    bool ok = maps && cli_legends_draw(wall->options, &wall->scene, list, count, p);
+    free(maps);
     return ok;
+}
+
+/* ---- dumps and warnings ----------------------------------------------------------------- */
+
+bool cli_wall_planes(void *user, cli_planes *planes) {
+    static const char *const names[3] = {"position.X", "position.Y", "position.Z"};
+    const cli_wall *wall = user;
+    size_t count;
+    const float *mask = cli_planes_find(planes, "mask.V", &count);
+    for (int k = 0; k < 3; k++) {
+        float *p = cli_planes_find(planes, names[k], &count);
+        for (size_t i = 0; mask && p && i < count; i++)
+            p[i] = mask[i] > 0 ? (float)((double)p[i] + wall->scene.origin[k]) : 0.0f;
+    }
+    return mask != NULL || cli_fail("the dump has no surface");
+}
+
+/* What this program did to the mesh. */
+static bool own_warning(const cli_wall *wall, uint32_t i, char *text, size_t size) {
+    if (wall->turned && i-- == 0)
+        snprintf(text, size,
+                 "it is open and seemed inside out, and was turned round; --flip off leaves it");
+    else if (wall->widened && i-- == 0)
+        snprintf(text, size,
+                 "%u nodes have a radius below %.3g mm and were given that; --grid makes it less",
+                 (unsigned)wall->widened, wall->thinnest);
+    else if (wall->decimated && i == 0)
+        snprintf(text, size,
+                 "vertices were merged: %u of %u triangles are left; --triangles says how many",
+                 (unsigned)wall->decimated_to, (unsigned)wall->decimated);
+    else
+        return false;
+    return true;
+}
+
+bool cli_wall_warning(const cli_wall *wall, uint32_t i, char *text, size_t size) {
+    const bool mesh = (wall->contents.kinds & IO_MESH) != 0;
+    const io_mesh *triangles = &wall->contents.mesh;
+    const io_tree *tree = &wall->contents.tree;
+    const sdv_tree *built = &wall->vessel.tree;
+    uint32_t read = mesh ? triangles->warning_count : tree->warning_count;
+    if (i < read)
+        snprintf(text, size, "%s", mesh ? triangles->warnings[i] : tree->warnings[i]);
+    else if ((i -= read) < built->warning_count)
+        sdv_tree_warning_text(built, i, text, size);
+    else if ((i -= built->warning_count) < wall->mesh.warning_count)
+        vsf_mesh_warning_text(&wall->mesh, i, text, size);
+    else
+        return own_warning(wall, i - wall->mesh.warning_count, text, size);
+    return true;
 }
 
 /* ---- all -------------------------------------------------------------------------------- */
@@ -516,8 +582,12 @@ static void take_settings(cli_wall *wall) {
     }
 }
 
-bool cli_wall_load(const cli_options *options, cli_wall *out) {
+bool cli_wall_load(const cli_options *options, const cli_place *place, cli_wall *out) {
     memset(out, 0, sizeof *out);
+    if (place) {
+        out->contents = *place->contents;
+        memset(place->contents, 0, sizeof *place->contents); /* moved */
+    }
     out->options = options;
     out->source = options->file_count ? &options->files[0] : &options->all;
     out->name = out->source->path ? out->source->path : options->scene ? options->scene : "aorta";
@@ -530,7 +600,11 @@ bool cli_wall_load(const cli_options *options, cli_wall *out) {
     out->host.log = on_log;
     out->host.user = out;
     take_settings(out);
-    bool ok = load_lines(out) && cli_wall_mesh(out) && find_brightness(out);
+    bool ok = load_lines(out);
+    out->placed = out->scene.count > 0 || (place && place->origin);
+    if (place && place->origin)
+        memcpy(out->scene.origin, place->origin, sizeof out->scene.origin);
+    ok = ok && cli_wall_mesh(out) && find_brightness(out);
     cli_progress_end(&out->progress);
     if (ok)
         choose_layers(out);

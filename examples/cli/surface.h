@@ -4,6 +4,7 @@
 
 #include "dump.h"
 #include "io_vessel.h"
+#include "legend.h"
 #include "threads.h"
 
 typedef struct cli_wall {
@@ -17,8 +18,11 @@ typedef struct cli_wall {
     io_vessel vessel;     /* of a file that holds a tree */
     uint32_t widened;     /* nodes of it that were thinner than this, and were made so wide: */
     double thinnest;      /* mm */
+    uint32_t decimated;   /* triangles that the mesh had before it was decimated; 0: it was not */
+    uint32_t decimated_to;
     bool made;            /* the mesh is from marching cubes, with their stairs */
     bool turned;          /* it is open, seemed inside out and was turned round */
+    bool placed;          /* the origin is that of lines or others in the scene, not its own */
     vsf_mesh mesh;        /* positions in mm, minus scene.origin */
     cli_scene scene;      /* a set that has the object, and one of lines unless there are none */
     cli_source line_source;
@@ -28,12 +32,13 @@ typedef struct cli_wall {
     vsf_settings settings;
     double range[2];  /* of --value */
     double curvature; /* median, 1/mm; 0: not yet known */
+    uint32_t contours[2]; /* sets of the scene that show vsf_feature 0 and 1; 0: not yet there */
     colour_map map;   /* of --wall-colormap */
 } cli_wall;
 
-/* Reads or makes mesh and lines and all numbers that do not depend on the camera. False: reported;
- * free it in any case. */
-bool cli_wall_load(const cli_options *options, cli_wall *out);
+/* Reads or makes mesh and lines and all numbers that do not depend on the camera. place: (Optional)
+ * among others in a scene. False: reported; free it in any case. */
+bool cli_wall_load(const cli_options *options, const cli_place *place, cli_wall *out);
 void cli_wall_free(cli_wall *wall);
 
 /* Reads or makes the mesh. Its origin is scene.origin, which it chooses unless there are lines.
@@ -43,13 +48,21 @@ bool cli_wall_mesh(cli_wall *wall);
 /* Shows a time (ms). Returns whether the object's distances changed; then `update` is for
  * lao_object_update. */
 bool cli_wall_time(cli_wall *wall, double time, lao_object_desc *update);
-/* What depends on the camera, once: --focus, and contours as further sets of lines. False:
- * reported.
+/* What depends on the camera: --focus, and contours as further sets of lines, made anew by each
+ * call. False: reported.
  */
 bool cli_wall_aim(cli_wall *wall, const cli_shot *shot);
+/* Of that --focus alone, which takes no time. */
+void cli_wall_focus(cli_wall *wall, const cli_shot *shot);
 /* The camera as the passes see it. */
 void cli_wall_eye(const cli_shot *shot, float eye[4]);
+/* The scales of its colours, at most two; maps and titles are kept in the others. How many? */
+uint32_t cli_wall_scales(cli_wall *wall, colour_map maps[2], char titles[2][160], legend out[2]);
 /* A cli_picture_edit of a cli_wall: draws the legends that --legend asks for. */
 bool cli_wall_legends(void *user, picture *p);
+/* The warning i of all about the mesh; false: there are fewer. */
+bool cli_wall_warning(const cli_wall *wall, uint32_t i, char *text, size_t size);
+/* A cli_planes_edit of a cli_wall: positions become absolute. */
+bool cli_wall_planes(void *user, cli_planes *planes);
 
 #endif

@@ -65,7 +65,7 @@ static bool take_triangles(cli_wall *wall) {
     float *positions = cli_new(mesh->vertex_count, 3 * sizeof *positions);
     if (!positions)
         return false;
-    for (int k = 0; k < 3 && !wall->scene.count; k++)
+    for (int k = 0; k < 3 && !wall->placed; k++)
         wall->scene.origin[k] = mesh->origin[k] * mesh->millimetres;
     for (size_t i = 0; i < 3 * (size_t)mesh->vertex_count; i++)
         positions[i] =
@@ -199,7 +199,7 @@ static void lay_lattice(cli_wall *wall, flow4d_volume *volume) {
     }
     for (int k = 0; k < 3; k++) {
         volume->size[k] = (uint32_t)ceil((high[k] - low[k]) / wall->thinnest) + 6;
-        volume->to_world[5 * k] = wall->thinnest;
+        volume->to_world[(size_t)5 * (size_t)k] = wall->thinnest;
         volume->to_world[4 * k + 3] = low[k] - 2.5 * wall->thinnest;
     }
 }
@@ -243,7 +243,7 @@ static bool make_from_tree(cli_wall *wall) {
     host.user = wall;
     if (!io_vessel_build(&host, &wall->contents.tree, &wall->vessel, &error))
         return cli_interrupted() ? cli_go_on() : cli_fail("%s: %s", wall->name, error.text);
-    for (int k = 0; k < 3 && !wall->scene.count; k++)
+    for (int k = 0; k < 3 && !wall->placed; k++)
         wall->scene.origin[k] = wall->vessel.origin[k];
     lay_lattice(wall, &volume);
     bool ok = sample_tree(wall, &host, &volume);
@@ -283,9 +283,33 @@ static bool load(cli_wall *wall) {
         return make_embedded(wall);
     if (wall->scene.volume_count)
         return make_from_volume(wall);
-    if (!cli_read(wall->source, IO_MESH | IO_TREE, &wall->contents))
+    if (!wall->contents.kinds && !cli_read(wall->source, IO_MESH | IO_TREE, &wall->contents))
         return false;
     return wall->contents.kinds & IO_MESH ? take_triangles(wall) : make_from_tree(wall);
+}
+
+/* Puts another mesh, made of it, in place of the mesh; its warnings are about what was read. */
+static void replace_mesh(cli_wall *wall, vsf_mesh *by) {
+    by->warning_count = wall->mesh.warning_count;
+    memcpy(by->warnings, wall->mesh.warnings, sizeof by->warnings);
+    vsf_mesh_free(&wall->mesh);
+    wall->mesh = *by;
+}
+
+/* A mesh that is too large for devices, or for the user. */
+static bool decimate(cli_wall *wall) {
+    uint32_t wanted = wall->options->surface.triangles, had = wall->mesh.triangle_count;
+    uint32_t most = wanted ? wanted : CLI_MOST_TRIANGLES;
+    vsf_mesh coarser;
+    if (had <= most)
+        return true;
+    wall->progress = (cli_progress){"decimating", wall->name, -1};
+    if (vsf_mesh_decimate(&wall->host, &wall->mesh, most, &coarser) != LAO_OK)
+        return false;
+    replace_mesh(wall, &coarser);
+    wall->decimated = had;
+    wall->decimated_to = wall->mesh.triangle_count;
+    return true;
 }
 
 static bool smooth(cli_wall *wall) {
@@ -301,14 +325,11 @@ static bool smooth(cli_wall *wall) {
     if (o->subdivide) {
         if (vsf_mesh_subdivide(&wall->host, &wall->mesh, o->subdivide, &finer) != LAO_OK)
             return false;
-        finer.warning_count = wall->mesh.warning_count;
-        memcpy(finer.warnings, wall->mesh.warnings, sizeof finer.warnings);
-        vsf_mesh_free(&wall->mesh);
-        wall->mesh = finer;
+        replace_mesh(wall, &finer);
     }
     return !desc.steps || vsf_mesh_smooth(&wall->host, &wall->mesh, &desc) == LAO_OK;
 }
 
 bool cli_wall_mesh(cli_wall *wall) {
-    return load(wall) && smooth(wall);
+    return load(wall) && decimate(wall) && smooth(wall);
 }

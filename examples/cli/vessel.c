@@ -5,6 +5,7 @@
 #include "scene_tree.h"
 
 #include <math.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <time.h>
@@ -22,6 +23,8 @@ static void on_log(void *user, sdv_log_item item, lao_result result, const char 
         cli_go_on();
     else if (result != LAO_OK)
         cli_fail("%s: %s", tree->name, text);
+    else if (item == SDV_LOG_GRID_DEVICE)
+        cli_warn(tree->name, text);
 }
 
 /* ---- the tree --------------------------------------------------------------------------- */
@@ -30,12 +33,33 @@ static bool is_surface(const cli_tree *tree) {
     return tree->options->vessel.surface || tree->contents.kinds == IO_MESH;
 }
 
-static bool read_tree(cli_tree *out) {
+/* Positions about another origin than the tree's own. */
+static void move_origin(io_vessel *vessel, const double origin[3]) {
+    for (int k = 0; k < 3; k++) {
+        double shift = vessel->origin[k] - origin[k];
+        vessel->origin[k] = origin[k];
+        if (shift == 0)
+            continue;
+        for (uint32_t i = 0; i < vessel->tree.node_count; i++) {
+            float *p = &vessel->tree.nodes[i].x + k;
+            *p = (float)((double)*p + shift);
+        }
+        for (int i = 0; i < 2; i++)
+            vessel->tree.info.bounds[i][k] += (float)shift;
+    }
+}
+
+static bool read_tree(cli_tree *out, const cli_place *place) {
     io_error error;
-    return cli_read(out->source, IO_TREE | IO_MESH, &out->contents) &&
-           (is_surface(out) ||
-            io_vessel_build(&out->host, &out->contents.tree, &out->vessel, &error) ||
-            (cli_interrupted() ? cli_go_on() : cli_fail("%s: %s", out->name, error.text)));
+    if (!out->contents.kinds && !cli_read(out->source, IO_TREE | IO_MESH, &out->contents))
+        return false;
+    if (is_surface(out))
+        return true;
+    if (!io_vessel_build(&out->host, &out->contents.tree, &out->vessel, &error))
+        return cli_interrupted() ? cli_go_on() : cli_fail("%s: %s", out->name, error.text);
+    if (place && place->origin)
+        move_origin(&out->vessel, place->origin);
+    return true;
 }
 
 static bool make_tree(cli_tree *out) {
@@ -147,9 +171,14 @@ static bool measure(cli_tree *tree) {
     return ok;
 }
 
-bool cli_tree_load(const cli_options *options, uint32_t index, cli_tree *out) {
+bool cli_tree_load(const cli_options *options, const cli_place *place, uint32_t index,
+                   cli_tree *out) {
     const cli_vessel_options *vessel = &options->vessel;
     memset(out, 0, sizeof *out);
+    if (place) {
+        out->contents = *place->contents;
+        memset(place->contents, 0, sizeof *place->contents); /* moved */
+    }
     out->options = options;
     out->aim = index < vessel->target_count ? &vessel->targets[index] : NULL;
     if (out->aim)
@@ -163,7 +192,9 @@ bool cli_tree_load(const cli_options *options, uint32_t index, cli_tree *out) {
     out->host.job = cli_threads_job(out->threads, &out->progress);
     out->host.log = on_log;
     out->host.user = out;
-    bool ok = out->source->path ? read_tree(out) : options->vessel.surface ? true : make_tree(out);
+    bool ok = out->source->path         ? read_tree(out, place)
+              : options->vessel.surface ? true
+                                        : make_tree(out);
     ok = ok && (is_surface(out) ? cli_tree_mesh(out)
                                 : cli_target_make(out) && lay_out(out) && measure(out));
     cli_progress_end(&out->progress);
@@ -235,7 +266,7 @@ static bool make_points(cli_tree *tree, io_lines *lines) {
     }
     for (uint32_t i = 0; i < 2 * shapes->count; i++) {
         const sdv_shape *s = &shapes->shapes[i / 2];
-        const float *a = &s->a.x, *b = &s->b.x;
+        const float a[3] = {s->a.x, s->a.y, s->a.z}, b[3] = {s->b.x, s->b.y, s->b.z};
         if (s->operation != SDV_UNION || s->kind == SDV_SHAPE_PLANE || s->kind == SDV_SHAPE_TREE)
             continue;
         for (int k = 0; k < 3; k++) {
@@ -300,6 +331,7 @@ static void add_marker(cli_tree *tree) {
     tree->marker.settings.parameterization = tree->marker.settings.style =
         tree->marker.settings.void_style = 0;
     scene->sets[0].object = &tree->marker.object.desc;
+    scene->sets[0].tree = NULL;
     scene->sets[0].module_settings[0] = &tree->marker.settings;
     scene->count = 2;
 }
@@ -312,7 +344,7 @@ static bool make_scene(cli_tree *tree) {
     memset(set, 0, 2 * sizeof *set);
     scene->sets = set;
     scene->count = 1;
-    scene->module = sdv_module();
+    scene->modules[scene->module_count++] = sdv_module();
     camera_view("iso", scene->direction, scene->up);
     if (tree->options->view)
         camera_view(tree->options->view, scene->direction, scene->up);
@@ -321,6 +353,7 @@ static bool make_scene(cli_tree *tree) {
     set->name = tree->name;
     set->settings = tree->source->settings;
     set->object = &tree->object.desc;
+    set->tree = tree;
     make_settings(tree, &tree->settings);
     set->module_settings[0] = &tree->settings;
     if (!make_points(tree, &set->lines))
@@ -343,23 +376,98 @@ static bool add_shapes(cli_tree *tree) {
                              &tree->object) == LAO_OK;
 }
 
+static bool make_object(cli_tree *tree, const sdv_grid_desc *desc) {
+    tree->progress = (cli_progress){"measuring the field of", tree->name, -1};
+    double begin = now();
+    bool ok = sdv_grid_build(&tree->host, &tree->vessel.tree, desc, &tree->grid) == LAO_OK;
+    cli_progress_end(&tree->progress);
+    tree->grid_seconds = now() - begin;
+    return ok && cli_go_on() && cli_tree_colour(tree) &&
+           sdv_object_make(&tree->host, &tree->grid, tree->colors, &tree->object) == LAO_OK;
+}
+
+enum { DEVICE_IMAGE = 4096 }; /* px: of an image, what any device of Vulkan has */
+
+/* The device builds the field; box and cones are made here, a first time to know whom colours are
+ * for. Where it cannot, which has been said, the CPU does. */
+static bool make_device_object(cli_tree *tree, const sdv_grid_desc *desc) {
+    const sdv_tree *t = &tree->vessel.tree;
+    for (int i = 0; i < 2; i++) {
+        sdv_object_free(&tree->object);
+        if (sdv_object_make_tree(&tree->host, t, desc, DEVICE_IMAGE, tree->colors, &tree->object) !=
+            LAO_OK)
+            return false;
+        tree->by_device = tree->object.on_device != 0;
+        if (!tree->by_device) {
+            sdv_object_free(&tree->object);
+            return make_object(tree, desc);
+        }
+        tree->grid = tree->object.grid; /* the object's own */
+        if (i == 0 && !cli_tree_colour(tree))
+            return false;
+    }
+    return true;
+}
+
 bool cli_tree_prepare(cli_tree *tree) {
+    const char *field = tree->options->vessel.field;
     sdv_grid_desc desc;
     memset(&desc, 0, sizeof desc);
     desc.resolution = tree->options->vessel.grid;
     if (is_surface(tree))
         return cli_go_on() && cli_tree_mesh_object(tree) && make_scene(tree) &&
                cli_tree_pattern(tree);
-    tree->progress = (cli_progress){"measuring the field of", tree->name, -1};
-    double begin = now();
-    bool ok = sdv_grid_build(&tree->host, &tree->vessel.tree, &desc, &tree->grid) == LAO_OK;
-    cli_progress_end(&tree->progress);
-    tree->grid_seconds = now() - begin;
-    ok = ok && cli_go_on() && cli_carving_make(tree) && cli_tree_colour(tree) &&
-         sdv_object_make(&tree->host, &tree->grid, tree->colors, &tree->object) == LAO_OK;
+    bool by_device = field && strcmp(field, "device") == 0;
+    bool ok = cli_carving_make(tree) &&
+              (by_device ? make_device_object(tree, &desc) : make_object(tree, &desc));
     ok = ok && (!tree->carving.shapes.count || add_shapes(tree)) &&
          (!tree->aim || !tree->options->vessel.link || cli_marker_make(tree));
     return ok && make_scene(tree) && cli_tree_pattern(tree);
+}
+
+/* ---- dumps and warnings ----------------------------------------------------------------- */
+
+bool cli_tree_planes(void *user, cli_planes *planes) {
+    static const char *const names[3] = {"position.X", "position.Y", "position.Z"};
+    static const char *const behind[3] = {"bgposition.X", "bgposition.Y", "bgposition.Z"};
+    const cli_tree *tree = user;
+    size_t count;
+    const float *segment = cli_planes_find(planes, "segment.V", &count);
+    float *p[3], *b[3], *mask = cli_planes_add(planes, "mask.V");
+    float *distance = tree->target ? cli_planes_add(planes, "distance.V") : NULL;
+    if (!segment || !mask || (tree->target && !distance))
+        return segment != NULL || cli_fail("the dump has no segments");
+    for (int k = 0; k < 3; k++) {
+        p[k] = cli_planes_find(planes, names[k], &count);
+        b[k] = cli_planes_find(planes, behind[k], &count);
+    }
+    for (size_t i = 0; i < count; i++) {
+        bool covered = segment[i] != -1;
+        mask[i] = covered ? 1.0f : 0.0f;
+        if (distance)
+            distance[i] =
+                covered ? sdv_target_point(tree->target, lao_v3_make(p[0][i], p[1][i], p[2][i]))
+                        : SDV_FAR;
+        for (int k = 0; k < 3; k++) {
+            double o = tree->vessel.origin[k];
+            p[k][i] = covered ? (float)((double)p[k][i] + o) : 0.0f;
+            if (b[k])
+                b[k][i] = (float)((double)b[k][i] + o);
+        }
+    }
+    return true;
+}
+
+bool cli_tree_warning(const cli_tree *tree, uint32_t i, char *text, size_t size) {
+    const io_tree *read = &tree->contents.tree;
+    const sdv_tree *t = &tree->vessel.tree;
+    if (i < read->warning_count)
+        snprintf(text, size, "%s", read->warnings[i]);
+    else if (i - read->warning_count < t->warning_count)
+        sdv_tree_warning_text(t, i - read->warning_count, text, size);
+    else
+        return false;
+    return true;
 }
 
 void cli_tree_free(cli_tree *tree) {
@@ -367,7 +475,8 @@ void cli_tree_free(cli_tree *tree) {
     sdv_object_free(&tree->object);
     vsf_mesh_free(&tree->mesh);
     free(tree->colors);
-    sdv_grid_free(&tree->grid);
+    if (!tree->by_device)
+        sdv_grid_free(&tree->grid);
     free(tree->carving.fields);
     cli_marker_free(&tree->marker);
     free(tree->distances);

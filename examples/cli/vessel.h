@@ -4,6 +4,7 @@
 
 #include "dump.h"
 #include "io_vessel.h"
+#include "legend.h"
 #include "picture.h"
 #include "threads.h"
 
@@ -43,7 +44,8 @@ typedef struct cli_tree {
     float *cone_distances;        /* owned; of segments and balls, as --tree counts them */
     uint32_t cone_count;
     cli_carving carving;
-    sdv_grid grid;
+    sdv_grid grid; /* by_device: the object's, box and cones alone */
+    bool by_device;
     double grid_seconds;
     uint8_t *colors;   /* owned; 8 per cone */
     const char *value; /* what the colours show; NULL: no number */
@@ -56,14 +58,22 @@ typedef struct cli_tree {
     cli_scene scene;   /* a set that has the object; before it one of the marker */
 } cli_tree;
 
-/* Reads or makes the tree, and what the options ask for but the field. index: of the path or target
- * that is measured to. False: reported; free it in any case. */
-bool cli_tree_load(const cli_options *options, uint32_t index, cli_tree *out);
+/* Reads or makes the tree, and what the options ask for but the field. place: (Optional) among
+ * others in a scene. index: of the path or target that is measured to. False: reported; free it in
+ * any case. */
+bool cli_tree_load(const cli_options *options, const cli_place *place, uint32_t index,
+                   cli_tree *out);
 /* Then: field, colours, object and scene, for rendering. False: reported. */
 bool cli_tree_prepare(cli_tree *tree);
 /* Makes the period of ink and marks a number of pixels of the shot, unless it is given. */
 void cli_tree_fit_period(cli_tree *tree, const cli_shot *shot);
 void cli_tree_free(cli_tree *tree);
+
+/* The warning i of all about the tree; false: there are fewer. */
+bool cli_tree_warning(const cli_tree *tree, uint32_t i, char *text, size_t size);
+/* A cli_planes_edit of a cli_tree: positions become absolute; what the field does not know is
+ * added, mask and distance. */
+bool cli_tree_planes(void *user, cli_planes *planes);
 
 /* A surface instead of a tree: that of the file, once it is read, or --surface. False: reported. */
 bool cli_tree_mesh(cli_tree *tree);
@@ -83,8 +93,14 @@ void cli_marker_free(cli_marker *marker);
 float cli_node_distance(const cli_tree *tree, uint32_t node);
 /* Colours of the cones' ends, as the source says; what is at risk is marked. False: reported. */
 bool cli_tree_colour(cli_tree *tree);
-/* The scale of the colours beside a picture, at a side ("left", ...). False: reported. */
+/* The scale of the colours, if they show a number; its map and title are kept in the others. */
+bool cli_tree_scale(const cli_tree *tree, colour_map *map, char title[160], legend *out);
+/* The same beside a picture, at a side ("left", ...). False: reported. */
 bool cli_tree_legend(const cli_tree *tree, const char *side, picture *p);
+
+/* The 2D layout drawn by the backend into a view of its own, for --layout NAME.png, in the colours
+ * of the tree, which is prepared. False: reported, nothing to free. */
+bool cli_layout_picture(const cli_tree *tree, picture *p);
 
 /* The 2D layout as a picture, in the colours of the tree; with a target on the distances between
  * (L19 5, Fig. 10). False: reported. */

@@ -199,17 +199,26 @@ static void rise(colour_map *map, double range[2]) {
     }
 }
 
-bool cli_tree_legend(const cli_tree *tree, const char *side, picture *p) {
-    char title[128];
-    double range[2] = {tree->range[0], tree->range[1]};
-    colour_map *map = cli_new(1, sizeof *map);
-    if (!map)
+bool cli_tree_scale(const cli_tree *tree, colour_map *map, char title[160], legend *out) {
+    if (!tree->value)
         return false;
+    *out = (legend){map, {tree->range[0], tree->range[1]}, title};
     colour_map_make(tree->colormap, map);
-    rise(map, range);
-    snprintf(title, sizeof title, "%s%s", tree->value, unit_of(tree->value));
-    const char *own = tree->options->legend_title;
-    const legend one = {map, {range[0], range[1]}, own ? own : title};
+    rise(map, out->range);
+    snprintf(title, 160, "%s%s", tree->value, unit_of(tree->value));
+    return true;
+}
+
+bool cli_tree_legend(const cli_tree *tree, const char *side, picture *p) {
+    char title[160];
+    legend one;
+    colour_map *map = cli_new(1, sizeof *map);
+    if (!map || !cli_tree_scale(tree, map, title, &one)) {
+        free(map);
+        return map != NULL;
+    }
+    if (tree->options->legend_title)
+        one.title = tree->options->legend_title;
     legend_side where = strcmp(side, "left") == 0    ? LEGEND_LEFT
                         : strcmp(side, "right") == 0 ? LEGEND_RIGHT
                                                      : LEGEND_BOTTOM;

@@ -578,6 +578,7 @@ static bool transfer(host_vk *host, const host_vk_image *image, VkImageLayout la
         ok = memory && vkBindBufferMemory(host->device, buffer, memory, 0) == VK_SUCCESS &&
              vkMapMemory(host->device, memory, 0, VK_WHOLE_SIZE, 0, &mapped) == VK_SUCCESS;
     }
+    ok = ok && mapped;
     if (ok && write)
         memcpy(mapped, in, size);
     ok = ok && copy(host, image, layout, buffer, write);

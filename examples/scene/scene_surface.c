@@ -275,7 +275,7 @@ bool scene_surface_make(const char *name, double spacing, scene_surface *out) {
     memset(&made, 0, sizeof made);
     for (int i = 0; i < 2 && r->walls[i]; i++) {
         memset(&volume, 0, sizeof volume);
-        for (int a = 0; a < 3; a++) {
+        for (size_t a = 0; a < 3; a++) {
             volume.size[a] = (uint32_t)ceil((r->high[a] - r->low[a]) / spacing) + 1;
             volume.to_world[5 * a] = spacing;
             volume.to_world[4 * a + 3] = r->low[a];

@@ -160,7 +160,7 @@ static void set_radii(growth *g, double *cubes) {
         if (i > 0)
             cubes[g->tree.segments[2 * i - 2]] += cubes[i];
     }
-    for (uint32_t i = 0; i < n; i++) {
+    for (size_t i = 0; i < n; i++) {
         double r = root_radius * cbrt(cubes[i] / cubes[0]);
         g->tree.radii[i] = (float)r;
         g->tree.positions[3 * i] = (float)g->nodes[i].x;

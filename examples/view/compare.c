@@ -8,13 +8,21 @@
 #include <stdlib.h>
 #include <string.h>
 
+enum { MOST_SETTINGS = 64 }; /* of a module */
+
+/* Copies of all settings of a set. */
+typedef struct set_copy {
+    lao_settings lines;
+    uint64_t modules[CLI_MODULES][MOST_SETTINGS / 2 + 1];
+    const void *list[CLI_MODULES]; /* of these, or NULL */
+} set_copy;
+
 typedef struct wish {
     cli_shot shot;
     compare_look look;
     char image[COMPARE_NAME];
     uint32_t level, serial;
-    lao_settings *sets;   /* owned: a copy for each set */
-    uint64_t module[128]; /* a copy of the module's settings, of which there is one struct */
+    set_copy *sets; /* owned */
 } wish;
 
 typedef struct side {
@@ -28,9 +36,8 @@ typedef struct side {
     bool open, fresh;       /* fresh: it has drawn nothing, and a first frame builds shaders */
     int backend;
     float time;
-    lao_settings *settings;
-    uint64_t module[128];
-    const void *modules[1];
+    camera_pose camera;
+    set_copy *sets;
 } side;
 
 struct compare {
@@ -48,6 +55,7 @@ static const char *const backends[2] = {"gl", "vk"};
 
 static void free_result(compare_result *r) {
     free(r->pixels);
+    free(r->values);
     free(r->texels);
     memset(r, 0, sizeof *r);
 }
@@ -63,14 +71,18 @@ static void close_session(side *s) {
 /* The session draws with copies, as the window's settings may change meanwhile. */
 static bool open_session(side *s, const wish *w) {
     const document *doc = s->compare->doc;
+    const double *contours = doc->options.surface.contours;
     bool timed = doc->command == CLI_SURFACE; /* whose distances go up with the object */
-    if (s->open && s->backend == w->look.backend && (!timed || s->time == w->shot.time))
+    bool aimed = timed && (contours[0] > 0 || contours[1] > 0); /* and whose lines with the scene */
+    if (s->open && s->backend == w->look.backend && (!timed || s->time == w->shot.time) &&
+        (!aimed || memcmp(&s->camera, &w->shot.camera, sizeof s->camera) == 0))
         return true;
     close_session(s);
     pthread_mutex_lock(&s->compare->data);
     s->open = true;
     s->backend = w->look.backend;
     s->time = w->shot.time;
+    s->camera = w->shot.camera;
     bool ok = cli_session_open(&s->session, backends[s->backend], doc->scene, &w->shot,
                                LAO_VIEW_KEEP_IMAGES);
     pthread_mutex_unlock(&s->compare->data);
@@ -80,56 +92,58 @@ static bool open_session(side *s, const wish *w) {
     return ok;
 }
 
-/* Those that the panel edits: of the last set that has any; the mark of a target has its own. */
-static const void *shared_settings(const cli_scene *scene) {
-    const void *found = NULL;
-    for (uint32_t i = 0; i < scene->count; i++) {
-        if (scene->sets[i].module_settings[0])
-            found = scene->sets[i].module_settings[0];
+static void copy_set(const cli_scene *scene, uint32_t set, set_copy *out) {
+    out->lines = scene->sets[set].settings;
+    for (uint32_t m = 0; m < scene->module_count; m++) {
+        const void *from = scene->sets[set].module_settings[m];
+        if (from)
+            memcpy(out->modules[m], from,
+                   sizeof(uint64_t) + scene->modules[m]->setting_count * sizeof(float));
     }
-    return found;
+}
+
+/* A struct of settings: uint64_t set; float values[]. */
+static void give(void *settings, const compare_look *look) {
+    uint64_t *set = settings;
+    float *values = (float *)(void *)(set + 1);
+    values[look->setting] = look->value;
+    *set |= (uint64_t)1 << look->setting;
+}
+
+/* The one setting that differs, to the set that it belongs to; what is of the whole picture to all
+ * of them. A wall and its lines (lineao surface) share theirs. */
+static void give_one(side *s, const wish *w, uint32_t set) {
+    const document *doc = s->compare->doc;
+    const document_settings *row = w->look.index < 0 ? NULL : &doc->settings[w->look.index];
+    if (!row)
+        return;
+    for (uint32_t m = 0; m < doc->scene->module_count; m++) {
+        if (doc->scene->sets[set].module_settings[m] == row->now)
+            give(s->sets[set].modules[m], &w->look);
+    }
+    if (row->module != lao_lines_module())
+        return;
+    bool whole = w->look.setting == LAO_SETTING_ID_supersampling;
+    bool walls = doc->command == CLI_SURFACE && w->look.setting != LAO_SETTING_ID_occlusion;
+    if (row->set == set || whole || (walls && set == 0))
+        give(&s->sets[set].lines, &w->look);
 }
 
 static void take_settings(side *s, const wish *w) {
     const cli_scene *scene = s->compare->doc->scene;
-    uint32_t count = scene->count;
-    memcpy(s->settings, w->sets, count * sizeof *s->settings);
-    memcpy(s->module, w->module, sizeof s->module);
-    s->modules[0] = s->module;
-    for (uint32_t i = 0; i < count; i++) {
+    memcpy(s->sets, w->sets, scene->count * sizeof *s->sets);
+    for (uint32_t i = 0; i < scene->count; i++) {
+        set_copy *copy = &s->sets[i];
         if (w->look.preset > 0) {
-            s->settings[i].preset = (float)(w->look.preset - 1);
-            s->settings[i].set |= LAO_SET(preset);
+            copy->lines.preset = (float)(w->look.preset - 1);
+            copy->lines.set |= LAO_SET(preset);
         }
-        s->session.sets[i].settings = &s->settings[i];
-        if (scene->module && scene->sets[i].module_settings[0] &&
-            scene->sets[i].module_settings[0] == shared_settings(scene))
-            s->session.sets[i].module_settings = s->modules;
+        for (uint32_t m = 0; m < scene->module_count; m++)
+            copy->list[m] = scene->sets[i].module_settings[m] ? copy->modules[m] : NULL;
+        give_one(s, w, i);
+        s->session.sets[i].settings = &copy->lines;
+        s->session.sets[i].module_settings = copy->list;
     }
-}
-
-/* Numbers as grays and colours between the least and the greatest. */
-static uint8_t *paint(const float *values, const lao_read_info *info) {
-    size_t count = (size_t)info->width * info->height;
-    uint8_t *pixels = cli_new(count, 4);
-    float low = INFINITY, high = -INFINITY;
-    for (size_t i = 0; i < count * info->channels; i++) {
-        if (isfinite(values[i]) && fabsf(values[i]) < 1e29f) {
-            low = fminf(low, values[i]);
-            high = fmaxf(high, values[i]);
-        }
-    }
-    float scale = high > low ? 255 / (high - low) : 0;
-    for (size_t i = 0; pixels && i < count; i++) {
-        for (uint32_t k = 0; k < 3; k++) {
-            uint32_t from = info->channels < 2 ? 0 : k;
-            float v = from < info->channels ? values[i * info->channels + from] : low;
-            pixels[4 * i + k] =
-                (uint8_t)(isfinite(v) ? fmaxf(0, fminf(255, (v - low) * scale + 0.5f)) : 255);
-        }
-        pixels[4 * i + 3] = 255;
-    }
-    return pixels;
 }
 
 static bool read_image(side *s, const wish *w, compare_result *out) {
@@ -143,11 +157,9 @@ static bool read_image(side *s, const wish *w, compare_result *out) {
         info.height = p.height;
         info.channels = 4;
     } else {
-        float *values = cli_session_image(&s->session, w->image, w->level, &info);
-        out->pixels = values ? paint(values, &info) : NULL;
-        free(values);
+        out->values = cli_session_image(&s->session, w->image, w->level, &info);
     }
-    if (!out->pixels)
+    if (!out->pixels && !out->values)
         return false;
     out->width = info.width;
     out->height = info.height;
@@ -220,9 +232,9 @@ compare *compare_start(const document *doc, const cli_listener *listener) {
     for (int i = 0; i < 2 && ok; i++) {
         side *s = &c->sides[i];
         s->compare = c;
-        s->settings = cli_new(doc->scene->count, sizeof *s->settings);
-        ok = s->settings && (pthread_create(&s->thread, NULL, work, s) == 0 ||
-                             cli_fail("no more threads for a comparison"));
+        s->sets = cli_new(doc->scene->count, sizeof *s->sets);
+        ok = s->sets && (pthread_create(&s->thread, NULL, work, s) == 0 ||
+                         cli_fail("no more threads for a comparison"));
         s->running = ok;
     }
     if (ok)
@@ -246,7 +258,7 @@ void compare_stop(compare *c) {
         free_result(&s->made[1]);
         free_result(&c->shown[i]);
         free(s->wish.sets);
-        free(s->settings);
+        free(s->sets);
     }
     pthread_cond_destroy(&c->wake);
     pthread_mutex_destroy(&c->lock);
@@ -271,10 +283,7 @@ void compare_ask(compare *c, const cli_shot *shot, const compare_look looks[2], 
         w->serial = c->serial;
         strncpy(w->image, image, sizeof w->image - 1);
         for (uint32_t s = 0; s < scene->count; s++)
-            w->sets[s] = scene->sets[s].settings;
-        if (scene->module && shared_settings(scene))
-            memcpy(w->module, shared_settings(scene),
-                   sizeof(uint64_t) + scene->module->setting_count * sizeof(float));
+            copy_set(scene, s, &w->sets[s]);
     }
     pthread_cond_broadcast(&c->wake);
     pthread_mutex_unlock(&c->lock);
@@ -283,6 +292,36 @@ void compare_ask(compare *c, const cli_shot *shot, const compare_look looks[2], 
 void compare_results(const compare *c, const compare_result *results[2]) {
     results[0] = &c->shown[0];
     results[1] = &c->shown[1];
+}
+
+/* Numbers as grays and colours between the least and the greatest, which are those of both sides,
+ * so that a colour is the same number in both. */
+static void find_range(const compare_result *r, float range[2]) {
+    size_t count = r->values ? (size_t)r->width * r->height * r->channels : 0;
+    for (size_t i = 0; i < count; i++) {
+        if (isfinite(r->values[i]) && fabsf(r->values[i]) < 1e29f) {
+            range[0] = fminf(range[0], r->values[i]);
+            range[1] = fmaxf(range[1], r->values[i]);
+        }
+    }
+}
+
+static void paint(compare_result *r, const float range[2]) {
+    size_t count = (size_t)r->width * r->height;
+    float low = range[0], scale = range[1] > low ? 255 / (range[1] - low) : 0;
+    if (!r->values)
+        return;
+    r->pixels = cli_new(count, 4);
+    memcpy(r->range, range, sizeof r->range);
+    for (size_t i = 0; r->pixels && i < count; i++) {
+        for (uint32_t k = 0; k < 3; k++) {
+            uint32_t from = r->channels < 2 ? 0 : k;
+            float v = from < r->channels ? r->values[i * r->channels + from] : low;
+            r->pixels[4 * i + k] =
+                (uint8_t)(isfinite(v) ? fmaxf(0, fminf(255, (v - low) * scale + 0.5f)) : 255);
+        }
+        r->pixels[4 * i + 3] = 255;
+    }
 }
 
 bool compare_take(compare *c) {
@@ -297,6 +336,11 @@ bool compare_take(compare *c) {
     if (news)
         c->taken = done;
     pthread_mutex_unlock(&c->lock);
+    float range[2] = {INFINITY, -INFINITY};
+    for (int i = 0; i < 2 && news; i++)
+        find_range(&c->shown[i], range);
+    for (int i = 0; i < 2 && news; i++)
+        paint(&c->shown[i], range);
     return news;
 }
 
@@ -317,15 +361,41 @@ void compare_unlock(compare *c) {
         pthread_mutex_unlock(&c->data);
 }
 
-int64_t compare_bits(const compare_result *a, const compare_result *b) {
-    int64_t count = 0;
-    if (a->bytes != b->bytes || !a->texels || !b->texels)
-        return -1;
-    for (size_t i = 0; i < a->bytes; i++) {
-        for (unsigned x = (unsigned)(a->texels[i] ^ b->texels[i]); x; x &= x - 1)
-            count++;
-    }
+static unsigned ones(unsigned x) {
+    unsigned count = 0;
+    for (; x; x &= x - 1)
+        count++;
     return count;
+}
+
+/* Of one pixel: its number k, or its byte. */
+static float value_of(const compare_result *r, size_t pixel, uint32_t k) {
+    return r->values ? r->values[pixel * r->channels + k] : (float)r->pixels[4 * pixel + k];
+}
+
+compare_count compare_differences(const compare_result *a, const compare_result *b) {
+    compare_count c = {-1, 0, 0, 0};
+    size_t count = (size_t)a->width * a->height, size = count ? a->bytes / count : 0;
+    if (a->bytes != b->bytes || a->width != b->width || !a->texels || !b->texels || !size ||
+        !a->pixels || !b->pixels)
+        return c;
+    c.bits = 0;
+    c.all = 8 * (int64_t)a->bytes;
+    for (size_t i = 0; i < count; i++) {
+        size_t at = i * size;
+        if (memcmp(a->texels + at, b->texels + at, size) == 0)
+            continue;
+        c.pixels++;
+        for (size_t k = at; k < at + size; k++)
+            c.bits += ones((unsigned)(a->texels[k] ^ b->texels[k]));
+    }
+    for (size_t i = 0; i < count && c.bits; i++) { /* rows may be the other way round */
+        for (uint32_t k = 0; k < a->channels; k++) {
+            float d = fabsf(value_of(a, i, k) - value_of(b, i, k));
+            c.worst = d > c.worst ? d : c.worst;
+        }
+    }
+    return c;
 }
 
 uint8_t *compare_difference(const compare_result *a, const compare_result *b, float gain) {

@@ -76,8 +76,16 @@ static void copy(view *v) {
 static void forget(view *v) {
     char text[MESSAGE_SIZE];
     float part;
+    if (v->film.running) {
+        film_cancel(v);
+        return;
+    }
     if (loader_busy(v->loader, text, &part)) {
         loader_cancel(v->loader);
+        return;
+    }
+    if (v->hands.pathing) {
+        v->hands.pathing = false;
         return;
     }
     memset(&v->picked, 0, sizeof v->picked);
@@ -91,13 +99,14 @@ static void forth(view *v) {
     player_step(v, 1);
 }
 static void slower(view *v) {
-    v->player.speed /= 1.5;
+    player_pace(v, 1 / 1.5);
 }
 static void faster(view *v) {
-    v->player.speed *= 1.5;
+    player_pace(v, 1.5);
 }
 static void loop(view *v) {
     v->player.loop = !v->player.loop;
+    trace(v, "loop %s", v->player.loop ? "on" : "off");
 }
 static void quit(view *v) {
     v->quit = true;
@@ -128,7 +137,8 @@ static const struct key_row {
     {GLFW_KEY_H, "H", "hide or show the panels", panels, false, false},
     {GLFW_KEY_S, "S", "save the picture", save, true, false},
     {GLFW_KEY_C, "C", "copy the command line of this picture", copy, true, false},
-    {GLFW_KEY_ESCAPE, "Esc", "cancel what is being opened; select nothing", forget, false, false},
+    {GLFW_KEY_ESCAPE, "Esc", "cancel a video or what is being opened; select nothing", forget,
+     false, false},
     {GLFW_KEY_Q, "Q", "quit", quit, false, false},
 };
 
@@ -145,9 +155,10 @@ static void on_key(GLFWwindow *glfw, int key, int code, int action, int mods) {
     (void)code;
     if (action == GLFW_RELEASE || ui_has_keyboard() || (mods & ~GLFW_MOD_CONTROL))
         return;
+    bool filming = v->film.running; /* then nothing changes but for its end */
     for (size_t i = 0; i < sizeof keys / sizeof *keys; i++) {
         if (keys[i].key == key && (v->open || !keys[i].open) &&
-            (action == GLFW_PRESS || keys[i].repeats))
+            (!filming || keys[i].run == forget) && (action == GLFW_PRESS || keys[i].repeats))
             keys[i].run(v);
     }
 }
@@ -167,7 +178,8 @@ static bool is_inside(const view *v, double x, double y) {
     return x >= p->x && y >= p->y && x < p->x + p->width && y < p->y + p->height;
 }
 
-static void click(view *v) {
+/* What lies there, and the ray to it. */
+static void find(view *v, picked *out, double from[3], double to[3]) {
     const window_rect *p = &v->picture;
     double x = 2 * (v->pointer.x + 0.5 - p->x) / p->width - 1;
     double y = 1 - 2 * (v->pointer.y + 0.5 - p->y) / p->height;
@@ -175,10 +187,33 @@ static void click(view *v) {
     shot.width = (uint32_t)p->width;
     shot.height = (uint32_t)p->height;
     cli_shot_aim(v->doc->scene, &shot);
-    pick_at(v->doc, &shot, x, y, 4.0 / p->height, &v->picked);
+    pick_at(v->doc, &shot, x, y, 4.0 / p->height, out);
+    orbit_ray(&shot.camera, (double)p->width / p->height, x, y, from, to);
+}
+
+static void click(view *v) {
+    double from[3], to[3];
+    find(v, &v->picked, from, to);
     stage_select(v);
+    if (v->hands.pathing)
+        hands_click(v, from, to);
     trace(v, "picked %d %u %u %u %.3f %.3f %.3f", (int)v->picked.kind, v->picked.set,
           v->picked.line, v->picked.point, v->picked.at[0], v->picked.at[1], v->picked.at[2]);
+}
+
+/* One ray through a tree's field takes no time; of lines and triangles there are too many. */
+void input_hover(view *v) {
+    picked found;
+    double from[3], to[3];
+    if (!v->pointer.fresh || v->pointer.button >= 0 || !v->open || v->doc->command != CLI_VESSEL ||
+        v->doc->tree.mesh.vertex_count)
+        return;
+    v->pointer.fresh = false;
+    memset(&found, 0, sizeof found);
+    if (!ui_has_pointer() && is_inside(v, v->pointer.x, v->pointer.y))
+        find(v, &found, from, to);
+    if (!v->hovered_flat)
+        tree_hover(v, &found);
 }
 
 static void on_button(GLFWwindow *glfw, int button, int action, int mods) {
@@ -222,6 +257,7 @@ static void on_move(GLFWwindow *glfw, double x, double y) {
     to_pixels(v, &x, &y);
     p->x = x;
     p->y = y;
+    p->fresh = true;
     if (p->button < 0 || !v->open)
         return;
     if (!p->moved && hypot(x - p->pressed_at[0], y - p->pressed_at[1]) < CLICK * ui_scale())
@@ -250,7 +286,7 @@ static void on_scroll(GLFWwindow *glfw, double x, double y) {
 /* ---- files and window -------------------------------------------------------------------- */
 
 static void on_drop(GLFWwindow *glfw, int count, const char **paths) {
-    loader_start(of(glfw)->loader, paths, (uint32_t)count);
+    stage_add(of(glfw), paths, (uint32_t)count);
 }
 
 static void on_resize(GLFWwindow *glfw, int width, int height) {

@@ -15,9 +15,8 @@
 static const char help[] =
     "usage: run view [FILE...] [FLAG...]\n"
     "       run view render|vessel|surface [ARGUMENTS of that command of lineao]\n\n"
-    "Opens line files, velocity volumes, vessel trees and meshes (with lines in them) in a "
-    "window;\n"
-    "without a FILE an embedded scene. More files can be dropped on the window.\n\n"
+    "Opens lines, velocity volumes, vessel trees and meshes, any of them at once, in a window;\n"
+    "without a FILE an embedded scene. Files dropped on the window join what is open.\n\n"
     "Flags of its own\n"
     "  --backend gl|vk     OpenGL or Vulkan (gl)\n"
     "  --window WxH        size of the window (1280x800)\n"
@@ -162,6 +161,9 @@ static bool open(view *v, const arguments *a) {
     v->comparison.gain = 16;
     v->comparison.looks[1].backend = 1;
     snprintf(v->comparison.image, sizeof v->comparison.image, "out");
+    v->film.count = 100;
+    v->film.fps = 25;
+    snprintf(v->film.path, sizeof v->film.path, "video.mp4");
     v->shot_size[0] = 1280;
     v->shot_size[1] = 960;
     snprintf(v->shot_path, sizeof v->shot_path, "picture.png");
@@ -176,6 +178,7 @@ static bool open(view *v, const arguments *a) {
 
 static void shut(view *v) {
     const window_backend *backend = v->window.backend;
+    hands_forget(v);
     stage_close(v);
     if (v->window.glfw && (v->window.gl || v->window.vk))
         backend->wait(&v->window);
@@ -191,13 +194,43 @@ static void title(view *v) {
     glfwSetWindowTitle(v->window.glfw, text);
 }
 
+/* The same document with something placed in it: all else stays. */
+static bool open_changed(view *v, document *doc) {
+    cli_shot fitted = v->fitted;
+    picked before = v->picked;
+    double speed = v->player.speed;
+    camera_pose camera = v->shot.camera;
+    document_inherit(doc, v->doc);
+    if (!stage_open(v, doc))
+        return false;
+    v->fitted.camera = fitted.camera;
+    v->shot.camera = camera;
+    v->picked = before;
+    v->player.speed = speed;
+    hands_begin(v);
+    return true;
+}
+
 static void take_document(view *v) {
+    char text[MESSAGE_SIZE];
+    float part;
+    bool busy = loader_busy(v->loader, text, &part), compared = v->compare != NULL;
     document *doc = loader_take(v->loader);
+    bool changed = v->hands.reopening && v->open;
+    if (!busy)
+        v->hands.reopening = false;
     if (!doc)
         return;
     v->awake = 3;
     v->player.playing = false;
-    if (stage_open(v, doc)) {
+    v->compare_first = v->compare_first || (changed && compared);
+    if (changed ? open_changed(v, doc) : stage_open(v, doc)) {
+        if (!changed) {
+            hands_forget(v);
+            hands_begin(v);
+            if (doc->options.frames)
+                v->film.count = (int)doc->options.frames;
+        }
         title(v);
         if (v->compare_first)
             v->compare = compare_start(v->doc, &v->listener);
@@ -266,15 +299,17 @@ static bool wait(view *v) {
     float part;
     bool busy = loader_busy(v->loader, text, &part);
     bool compared = v->compare && compare_busy(v->compare);
-    if (player_advance(v, glfwGetTime()) || v->steady.moving || v->dirty || v->awake > 0)
+    bool filming = v->film.running;
+    film_go_on(v);
+    if (player_advance(v, glfwGetTime()) || v->steady.moving || v->dirty || v->awake > 0 || filming)
         glfwPollEvents();
     else
         glfwWaitEventsTimeout(busy || compared ? 0.05 : 0.5);
     take_document(v);
     trace_messages(v);
     keep_steady(v, glfwGetTime());
-    bool news =
-        busy || compared || v->player.playing || v->steady.moving || v->dirty || v->awake > 0;
+    bool news = busy || compared || filming || v->player.playing || v->steady.moving || v->dirty ||
+                v->awake > 0;
     v->awake -= v->awake > 0;
     return news;
 }

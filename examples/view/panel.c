@@ -14,6 +14,7 @@
 /* ---- scene ------------------------------------------------------------------------------- */
 
 static void open_words(view *v, const char *const *words, uint32_t count) {
+    v->hands.reopening = false;
     loader_start(v->loader, words, count);
 }
 
@@ -22,9 +23,8 @@ static void open_line(view *v) {
     static const uint32_t most = 256;
     const char *words[256];
     uint32_t count = 0;
-    char *text = v->words, *to = text, copy[sizeof v->words];
+    char copy[sizeof v->words], *text = copy, *to = copy;
     memcpy(copy, v->words, sizeof copy);
-    to = text = copy;
     while (*text && count < most) {
         char quote = 0;
         text += strspn(text, " ");
@@ -76,24 +76,34 @@ static void embedded(view *v) {
     ui_group_end();
 }
 
-static void describe(const view *v) {
+/* One of several files, but no volume that is made of several. */
+static bool can_go(const document *doc, const cli_set *set) {
+    return doc->command == CLI_RENDER && doc->options.file_count > 1 && set->source->path &&
+           set->name == set->source->path;
+}
+
+static void describe(view *v) {
     const cli_scene *scene = v->doc->scene;
     char text[512];
     for (uint32_t i = 0; i < scene->count; i++) {
         const cli_set *set = &scene->sets[i];
-        if (set->object && v->doc->command == CLI_VESSEL) {
-            const sdv_tree_info *info = &v->doc->tree.vessel.tree.info;
+        if (set->tree) {
+            const sdv_tree_info *info = &set->tree->vessel.tree.info;
             snprintf(text, sizeof text, "%s: tree of %u nodes, %u segments, %u roots", set->name,
                      info->nodes, info->segments, info->roots);
-        } else if (set->object) {
+        } else if (set->wall) {
             snprintf(text, sizeof text, "%s: surface of %u vertices, %u triangles", set->name,
-                     v->doc->wall.mesh.vertex_count, v->doc->wall.mesh.triangle_count);
+                     set->wall->mesh.vertex_count, set->wall->mesh.triangle_count);
         } else {
             snprintf(text, sizeof text, "%s: %u lines, %u points%s%s", set->name,
                      set->lines.line_count, set->lines.point_count,
                      set->value ? ", coloured by " : "", set->value ? set->value : "");
         }
         ui_text_wrapped(text);
+        ui_group((int)i);
+        if (can_go(v->doc, set) && ui_small_button("Take away"))
+            stage_remove(v, set->source->path);
+        ui_group_end();
     }
 }
 
@@ -110,8 +120,8 @@ static void scene_tab(view *v) {
     if (v->open)
         describe(v);
     ui_space();
-    ui_text_dim("Open files: drop them on the window, or type their names, with flags of lineao "
-                "render, vessel or surface.");
+    ui_text_dim("Files dropped on the window join what is open. Names typed here, with flags of "
+                "lineao render, vessel or surface, take its place.");
     ui_width(-1);
     if (ui_input("##words", v->words, sizeof v->words, "FILE... or render FILE --color fa"))
         open_line(v);
@@ -230,17 +240,18 @@ static void picture_tab(view *v) {
     ui_input("##picture file", v->shot_path, sizeof v->shot_path, "picture.png");
     ui_width_left(&width);
     ui_width(0.36f * width);
-    ui_slider_int("##wide", &v->shot_size[0], 16, 8192);
+    ui_slider_int("##wide", &v->shot_size[0], 16, 8192, "%d");
     ui_same_line();
-    ui_text("x");
+    ui_label("x");
     ui_same_line();
     ui_width(0.36f * width);
-    ui_slider_int("##high", &v->shot_size[1], 16, 8192);
+    ui_slider_int("##high", &v->shot_size[1], 16, 8192, "%d");
     ui_help("Ctrl and a click: type the number");
     if (ui_button("As in the window")) {
         v->shot_size[0] = v->picture.width;
         v->shot_size[1] = v->picture.height;
     }
+    ui_same_line();
     if (ui_button("Save picture"))
         stage_save(v, v->shot_path, (uint32_t)v->shot_size[0], (uint32_t)v->shot_size[1]);
     ui_help("the same bits as the command line below writes");
@@ -255,25 +266,11 @@ static void picture_tab(view *v) {
         trace(v, "command %s", command);
     }
     free(command);
+    ui_space();
+    film_widgets(v);
 }
 
 /* ---- all of it --------------------------------------------------------------------------- */
-
-/* The blur of a surface leaves what is as near as the picked place sharp. */
-static void focus_here(view *v) {
-    double forward[3], depth = 0, length = 0;
-    float near = 0.1f * v->shot.sphere[3];
-    for (int k = 0; k < 3; k++) {
-        forward[k] = v->shot.camera.center[k] - v->shot.camera.eye[k];
-        length += forward[k] * forward[k];
-    }
-    for (int k = 0; k < 3; k++)
-        depth += (v->picked.at[k] - v->shot.camera.eye[k]) * forward[k] / sqrt(length);
-    document_set(v->doc, 0, VSF_SETTING_ID_focus, 1);
-    document_set(v->doc, 0, VSF_SETTING_ID_focus_near, (float)depth - near);
-    document_set(v->doc, 0, VSF_SETTING_ID_focus_far, (float)depth + near);
-    stage_changed(v, false);
-}
 
 /* What was clicked: words below, a mark in the picture. */
 static void picked_text(view *v, window_rect place) {
@@ -283,6 +280,7 @@ static void picked_text(view *v, window_rect place) {
     ui_panel("Picked", (window_rect){place.x, place.y + place.height - (int)height, place.width,
                                      (int)height});
     ui_line();
+    ui_disable(v->film.running);
     if (ui_small_button("Look there")) {
         for (int k = 0; k < 3; k++) {
             v->shot.camera.eye[k] += v->picked.at[k] - v->shot.camera.center[k];
@@ -292,13 +290,13 @@ static void picked_text(view *v, window_rect place) {
     }
     ui_help("turn around this place");
     ui_same_line();
-    if (v->doc->command == CLI_SURFACE && ui_small_button("Focus here"))
-        focus_here(v);
-    ui_same_line();
     if (ui_small_button("Forget")) {
         memset(&v->picked, 0, sizeof v->picked);
+        v->hands.pathing = false;
         stage_select(v);
     }
+    hands_buttons(v);
+    ui_disable_end();
     ui_text_wrapped(v->picked.text);
     ui_panel_end();
 }
@@ -317,6 +315,7 @@ static void mark_picked(const view *v) {
 
 static void left(view *v, window_rect place) {
     ui_panel("Panel", place);
+    ui_disable(v->film.running);
     if (ui_tabs("tabs")) {
         if (ui_tab("Scene")) {
             scene_tab(v);
@@ -338,12 +337,13 @@ static void left(view *v, window_rect place) {
             panel_compare(v);
             ui_tab_end();
         }
-        if (v->open && v->doc->command == CLI_VESSEL && ui_tab("Tree")) {
+        if (v->open && picked_tree(v->doc, &v->picked) && ui_tab("Tree")) {
             panel_tree(v);
             ui_tab_end();
         }
         ui_tabs_end();
     }
+    ui_disable_end();
     ui_panel_end();
 }
 
@@ -416,7 +416,11 @@ void panel_draw(view *v) {
     if (memcmp(&before, &v->picture, sizeof before) != 0)
         v->dirty = true;
     mark_picked(v);
+    input_hover(v);
+    tree_marks(v);
+    hands_marks(v);
     if (v->compare)
         compare_marks(v);
+    film_panel(v);
     said(v);
 }

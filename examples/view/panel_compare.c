@@ -6,6 +6,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+enum { SIDE_NAME = 128 };
+
 void compare_end(view *v) {
     compare_stop(v->compare);
     v->compare = NULL;
@@ -14,10 +16,11 @@ void compare_end(view *v) {
 
 /* The i-th image of the frame graph that a dump would have, or the picture. */
 static const lao_image_row *image_row(const view *v, uint32_t i) {
-    const lao_module *modules[2] = {lao_lines_module(), v->doc->scene->module};
-    for (int m = 0; m < 2 && modules[m]; m++) {
-        for (uint32_t k = 0; k < modules[m]->image_count; k++) {
-            const lao_image_row *row = &modules[m]->images[k];
+    const cli_scene *scene = v->doc->scene;
+    for (uint32_t m = 0; m <= scene->module_count; m++) {
+        const lao_module *module = m ? scene->modules[m - 1] : lao_lines_module();
+        for (uint32_t k = 0; k < module->image_count; k++) {
+            const lao_image_row *row = &module->images[k];
             if (row->format != LAO_FORMAT_HOST && !(row->flags & LAO_IMAGE_IMPORT) &&
                 row->format != LAO_FORMAT_D32F && i-- == 0)
                 return row;
@@ -70,6 +73,81 @@ static void choose_side(view *v, int side) {
     ui_group_end();
 }
 
+/* Entries of the list of settings: what is chosen, by document.settings and number. */
+static bool setting_at(const view *v, int entry, int *index, int *setting) {
+    for (uint32_t i = 0; i < v->doc->settings_count; i++) {
+        for (uint32_t k = 0; k < v->doc->settings[i].module->setting_count; k++) {
+            if (!document_reloads(v->doc, i, (int)k) && entry-- == 0) {
+                *index = (int)i;
+                *setting = (int)k;
+                return true;
+            }
+        }
+    }
+    return false;
+}
+
+static const lao_setting_row *row_of(const view *v, const compare_look *look) {
+    return &v->doc->settings[look->index].module->settings[look->setting];
+}
+
+/* "strength", or "strength (Lines)" where there are several kinds. */
+static void choose_setting(view *v) {
+    enum { ROOM = 16384 };
+    compare_look *looks = v->comparison.looks;
+    char *names = cli_new(ROOM, 1);
+    int chosen = 0, index, setting;
+    if (!names)
+        return;
+    size_t used = (size_t)snprintf(names, ROOM, "no setting differs");
+    for (int i = 0; setting_at(v, i, &index, &setting) && used < ROOM; i++) {
+        const document_settings *s = &v->doc->settings[index];
+        bool one = v->doc->settings_count == 1;
+        used += (size_t)snprintf(names + used, ROOM - used, one ? "|%s" : "|%s (%s)",
+                                 s->module->settings[setting].name, s->title);
+        if (looks->index == index && looks->setting == setting)
+            chosen = i + 1;
+    }
+    ui_width(-1);
+    if (ui_combo("##differs", &chosen, names)) {
+        for (int side = 0; side < 2; side++) {
+            compare_look *look = &looks[side];
+            look->index = -1;
+            if (chosen && setting_at(v, chosen - 1, &look->index, &look->setting))
+                look->value = document_value(v->doc, (uint32_t)look->index, look->setting);
+        }
+        v->dirty = true;
+    }
+    ui_help("one setting that is not the same left and right");
+    free(names);
+}
+
+/* Its values on both sides. */
+static void edit_setting(view *v) {
+    compare_look *looks = v->comparison.looks;
+    if (looks->index < 0)
+        return;
+    const lao_setting_row *row = row_of(v, looks);
+    for (int side = 0; side < 2; side++) {
+        ui_group(side);
+        ui_widget_name(side ? "right value" : "left value");
+        if (ui_table("sides", 2)) {
+            ui_cell();
+            ui_label(side ? "right" : "left");
+            ui_cell();
+            if (panel_edit(row, &looks[side].value)) {
+                if (row->type == LAO_SETTING_INT)
+                    looks[side].value = roundf(looks[side].value);
+                v->dirty = true;
+            }
+            panel_explain(row);
+            ui_table_end();
+        }
+        ui_widget_name(NULL);
+        ui_group_end();
+    }
+}
+
 static void pass_times(const compare_result *const r[2]) {
     char text[64];
     if (!ui_table("passes", 3))
@@ -96,10 +174,30 @@ static void pass_times(const compare_result *const r[2]) {
     ui_table_end();
 }
 
+static void tell_difference(const comparison *c, const compare_result *r) {
+    const compare_count *n = &c->count;
+    char text[160];
+    if (n->bits < 0) {
+        ui_text("the images have different sizes");
+        return;
+    }
+    snprintf(text, sizeof text, "%lld of %lld bits differ", (long long)n->bits, (long long)n->all);
+    ui_text(text);
+    if (n->bits) {
+        snprintf(text, sizeof text, "in %lld pixels, at most by %.4g%s", (long long)n->pixels,
+                 (double)n->worst, r->values ? "" : " of 255");
+        ui_text(text);
+    }
+    if (r->values) {
+        snprintf(text, sizeof text, "%u x %u, black %.4g, white %.4g", r->width, r->height,
+                 (double)r->range[0], (double)r->range[1]);
+        ui_text(text);
+    }
+}
+
 void panel_compare(view *v) {
     comparison *c = &v->comparison;
     const compare_result *r[2];
-    char text[128];
     bool on = v->compare != NULL;
     if (ui_toggle("Two pictures side by side", &on)) {
         if (on)
@@ -109,12 +207,14 @@ void panel_compare(view *v) {
         v->dirty = true;
     }
     if (!v->compare) {
-        ui_text_dim("The same view on OpenGL and Vulkan, or with two presets; every image of the "
-                    "frame graph, and the time of every pass.");
+        ui_text_dim("The same view on OpenGL and Vulkan, with two presets, or with two values of a "
+                    "setting; every image of the frame graph, and the time of every pass.");
         return;
     }
     choose_side(v, 0);
     choose_side(v, 1);
+    choose_setting(v);
+    edit_setting(v);
     ui_text_dim("Image");
     choose_image(v);
     ui_toggle("Difference", &c->difference);
@@ -129,12 +229,8 @@ void panel_compare(view *v) {
         ui_text("drawing ...");
     else if (!r[0]->pixels || !r[1]->pixels)
         ui_text_wrapped("This image does not exist with these settings.");
-    else if (c->bits < 0)
-        ui_text("the images have different sizes");
-    else {
-        snprintf(text, sizeof text, "%lld bits differ", (long long)c->bits);
-        ui_text(text);
-    }
+    else
+        tell_difference(c, r[0]);
     ui_scroll("times", 0);
     pass_times(r);
     ui_scroll_end();
@@ -150,6 +246,7 @@ void compare_draw(view *v) {
         shot.width = (uint32_t)v->picture.width;
         shot.height = (uint32_t)v->picture.height;
         cli_shot_aim(v->doc->scene, &shot);
+        stage_aim(v, &shot);
         compare_ask(v->compare, &shot, c->looks, c->image, c->level);
         v->dirty = false;
     }
@@ -157,11 +254,12 @@ void compare_draw(view *v) {
     compare_results(v->compare, r);
     if (news) {
         c->ready = r[0]->pixels && r[1]->pixels;
-        c->bits = compare_bits(r[0], r[1]);
+        c->count = compare_differences(r[0], r[1]);
         for (int k = 0; k < 2 && c->ready; k++)
             c->ready =
                 backend->upload(&v->window, SLOT_LEFT + k, r[k]->width, r[k]->height, r[k]->pixels);
-        trace(v, "compared %s %ux%u %lld", c->image, r[0]->width, r[0]->height, (long long)c->bits);
+        trace(v, "compared %s %ux%u %lld", c->image, r[0]->width, r[0]->height,
+              (long long)c->count.bits);
     }
     if ((news || c->stale) && c->ready && c->difference) {
         uint8_t *pixels = compare_difference(r[0], r[1], c->gain);
@@ -199,16 +297,21 @@ void compare_show(view *v) {
     show_part(v, SLOT_RIGHT, c->size[1], c->divider, 1);
 }
 
-static const char *side_name(const view *v, int side, char text[64]) {
+static const char *side_name(const view *v, int side, char text[SIDE_NAME]) {
     static const char *const presets[] = {"", " default", " classic", " paper"};
     const compare_look *look = &v->comparison.looks[side];
-    snprintf(text, 64, "%s%s", look->backend ? "Vulkan" : "OpenGL", presets[look->preset]);
+    char value[32] = "";
+    if (look->index >= 0)
+        cli_setting_text(row_of(v, look), look->value, value, sizeof value);
+    snprintf(text, SIDE_NAME, "%s%s%s%s%s%s", look->backend ? "Vulkan" : "OpenGL",
+             presets[look->preset], *value ? " " : "", *value ? row_of(v, look)->name : "",
+             *value ? " " : "", value);
     return text;
 }
 
 void compare_marks(view *v) {
     const comparison *c = &v->comparison;
-    char text[64];
+    char text[SIDE_NAME];
     float x = (float)v->picture.x + (float)c->divider * (float)v->picture.width;
     float top = (float)v->picture.y, bottom = top + (float)v->picture.height, s = ui_scale();
     if (c->difference)

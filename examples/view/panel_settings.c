@@ -18,7 +18,7 @@ static bool edit_number(const lao_setting_row *row, float *value) {
     return ui_drag("##value", value, speed, row->minimum, row->maximum, format);
 }
 
-static bool edit(const lao_setting_row *row, float *value) {
+bool panel_edit(const lao_setting_row *row, float *value) {
     bool on = *value > 0;
     int chosen = (int)*value;
     ui_width(-1);
@@ -38,7 +38,7 @@ static bool edit(const lao_setting_row *row, float *value) {
     }
 }
 
-static void explain(const lao_setting_row *row) {
+void panel_explain(const lao_setting_row *row) {
     char text[512], low[32], high[32], standard[64];
     cli_shortest(row->minimum, low, sizeof low);
     cli_shortest(row->maximum, high, sizeof high);
@@ -76,15 +76,15 @@ static void row_of(view *v, uint32_t index, int setting) {
         return;
     ui_group(setting);
     ui_cell();
-    ui_text(label);
-    explain(row);
+    ui_label(label);
+    panel_explain(row);
     ui_cell();
     ui_widget_name(row->name);
-    if (edit(row, &value)) {
+    if (panel_edit(row, &value)) {
         document_set(doc, index, setting, row->type == LAO_SETTING_INT ? roundf(value) : value);
         changed(v, index, setting);
     }
-    explain(row);
+    panel_explain(row);
     ui_cell();
     if ((doc->settings[index].edited >> setting & 1) && ui_small_button("x##reset")) {
         document_reset(doc, index, setting);

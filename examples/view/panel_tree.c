@@ -48,30 +48,115 @@ static void draw(const ui_area *a, const cli_tree *tree) {
     }
 }
 
+/* The branch (reduced node) that a node of the tree lies on; SDV_NONE: none, or of another tree. */
+static uint32_t branch_of(const cli_tree *tree, const view *v, const picked *p) {
+    return tree && picked_on(v->doc, p) == tree ? tree->reduced.owners[p->point] : SDV_NONE;
+}
+
+/* In the flat tree: the edge of a branch, and its end. */
+static void mark_flat(const ui_area *a, const cli_tree *tree, uint32_t branch, uint32_t color) {
+    uint32_t parent = branch == SDV_NONE ? SDV_NONE : tree->reduced.parents[branch];
+    float from[2], to[2];
+    if (branch == SDV_NONE)
+        return;
+    place_of(a, &tree->layout, branch, to);
+    ui_draw_disc(false, to[0], to[1], 4 * ui_scale(), color);
+    if (parent == SDV_NONE)
+        return;
+    place_of(a, &tree->layout, parent, from);
+    ui_draw_line(false, from[0], from[1], to[0], to[1], color, 3 * ui_scale());
+}
+
+/* In the picture: the middle line of a branch. */
+static void mark_solid(const view *v, const cli_tree *tree, uint32_t branch, uint32_t color) {
+    const double *o = tree->vessel.origin;
+    for (uint32_t i = 0; branch != SDV_NONE && i < tree->vessel.tree.node_count; i++) {
+        uint32_t parent = tree->vessel.tree.parents[i];
+        const lao_v4 *n = &tree->vessel.tree.nodes[i], *p;
+        float from[2], to[2];
+        if (tree->reduced.owners[i] != branch || parent == SDV_NONE)
+            continue;
+        p = &tree->vessel.tree.nodes[parent];
+        const double a[3] = {(double)p->x + o[0], (double)p->y + o[1], (double)p->z + o[2]};
+        const double b[3] = {(double)n->x + o[0], (double)n->y + o[1], (double)n->z + o[2]};
+        if (stage_place(v, a, from) && stage_place(v, b, to))
+            ui_draw_line(true, from[0], from[1], to[0], to[1], color, 2.5f * ui_scale());
+    }
+}
+
+/* The tree that is laid out, if it has branches, or NULL. */
+static const cli_tree *shown_tree(const view *v) {
+    const cli_tree *tree = v->open ? picked_tree(v->doc, &v->picked) : NULL;
+    return tree && tree->reduced.node_count > 0 ? tree : NULL;
+}
+
+void tree_hover(view *v, const picked *at) {
+    const cli_tree *tree = shown_tree(v);
+    uint32_t before = tree ? branch_of(tree, v, &v->hovered) : SDV_NONE;
+    v->hovered = *at;
+    uint32_t now = tree ? branch_of(tree, v, at) : SDV_NONE;
+    if (now != before && now != SDV_NONE)
+        trace(v, "hovers %u", tree->reduced.nodes[now]);
+}
+
+/* Beside the pointer: what it is on. */
+static void tell_hovered(const view *v) {
+    const cli_tree *tree = picked_on(v->doc, &v->hovered);
+    uint32_t node = v->hovered.point, branch = branch_of(tree, v, &v->hovered);
+    char text[96], near[48] = "";
+    if (tree->distances && branch != SDV_NONE)
+        snprintf(near, sizeof near, ", %.3g mm from the target", (double)tree->distances[branch]);
+    snprintf(text, sizeof text, "node %u, radius %.3g mm%s", node,
+             (double)tree->vessel.tree.nodes[node].w, near);
+    float s = ui_scale(), wide = ui_text_width(text);
+    float right = (float)(v->picture.x + v->picture.width) - wide - 6 * s;
+    float x = fminf((float)v->pointer.x + 14 * s, right), y = (float)v->pointer.y + 14 * s;
+    ui_draw_box(true, x - 4 * s, y - 2 * s, x + wide + 4 * s, y + ui_text_height(), 0xd0202020);
+    ui_draw_text(true, x, y, 0xffffffff, text);
+}
+
+void tree_marks(const view *v) {
+    const cli_tree *tree = shown_tree(v);
+    if (!tree || v->picture.width < 1)
+        return;
+    mark_solid(v, tree, branch_of(tree, v, &v->picked), 0xff1030f0);
+    mark_solid(v, tree, branch_of(tree, v, &v->hovered), 0xffffffff);
+    if (picked_on(v->doc, &v->hovered) && !v->hovered_flat && v->pointer.button < 0)
+        tell_hovered(v);
+}
+
 void panel_tree(view *v) {
-    const cli_tree *tree = &v->doc->tree;
-    float width, at[2];
+    const cli_tree *tree = shown_tree(v);
+    float width;
     char text[128];
-    ui_text_dim(
-        "The branches side by side, the root above. Click a branch here or in the picture.");
+    picked found;
+    if (v->doc->command == CLI_VESSEL) /* which has targets and cuts */
+        hands_tree(v);
+    ui_space();
+    if (!tree)
+        return;
+    ui_text_dim("The branches side by side, the root above. Point at one, or click it, here or in "
+                "the picture.");
     ui_width_left(&width);
     ui_area a = ui_canvas("layout", width, 1.2f * width);
     ui_draw_box(false, a.x, a.y, a.x + a.width, a.y + a.height, 0xff202224);
     draw(&a, tree);
     uint32_t over = a.hovered ? nearest(&a, tree) : SDV_NONE;
     if (over != SDV_NONE) {
-        place_of(&a, &tree->layout, over, at);
-        ui_draw_disc(false, at[0], at[1], 4 * ui_scale(), 0xffffffff);
-        snprintf(text, sizeof text, "node %u", tree->reduced.nodes[over]);
+        uint32_t node = tree->reduced.nodes[over];
+        pick_node(v->doc, tree, node, &found);
+        tree_hover(v, &found);
+        snprintf(text, sizeof text, "node %u", node);
         ui_help(text);
-        if (a.pressed && v->picked.point != tree->reduced.nodes[over]) {
-            pick_node(v->doc, tree->reduced.nodes[over], &v->picked);
+        if (a.pressed && v->picked.point != node) {
+            v->picked = found;
             stage_select(v);
-            trace(v, "node %u", v->picked.point);
+            trace(v, "node %u", node);
         }
+    } else if (v->hovered_flat) {
+        memset(&v->hovered, 0, sizeof v->hovered);
     }
-    if (v->picked.kind == PICKED_TREE && tree->reduced.owners[v->picked.point] != SDV_NONE) {
-        place_of(&a, &tree->layout, tree->reduced.owners[v->picked.point], at);
-        ui_draw_disc(false, at[0], at[1], 5 * ui_scale(), 0xff1030f0);
-    }
+    v->hovered_flat = over != SDV_NONE;
+    mark_flat(&a, tree, branch_of(tree, v, &v->picked), 0xff1030f0);
+    mark_flat(&a, tree, branch_of(tree, v, &v->hovered), 0xffffffff);
 }

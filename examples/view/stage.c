@@ -17,7 +17,8 @@ static void find_bounds(view *v) {
     bool any = false;
     for (uint32_t s = 0; s < v->doc->scene->count; s++) {
         const io_lines *lines = &v->doc->scene->sets[s].lines;
-        for (size_t i = 0; i < 3 * (size_t)lines->point_count; i++) {
+        for (size_t i = 0; i < 3 * (size_t)lines->point_count && !v->doc->scene->sets[s].overlay;
+             i++) {
             size_t k = i % 3;
             float value = lines->points[i];
             if (!isfinite(value))
@@ -30,6 +31,7 @@ static void find_bounds(view *v) {
 }
 
 void stage_close(view *v) {
+    film_cancel(v);
     compare_stop(v->compare);
     v->compare = NULL;
     v->comparison.ready = false;
@@ -45,6 +47,7 @@ void stage_close(view *v) {
     v->moving_view.id = 0;
     v->picked_lines.id = 0;
     memset(&v->picked, 0, sizeof v->picked);
+    memset(&v->hovered, 0, sizeof v->hovered);
 }
 
 static bool start(view *v) {
@@ -68,9 +71,11 @@ bool stage_open(view *v, document *doc) {
     stage_close(v);
     v->doc = doc;
     v->shot = v->fitted = doc->shot;
+    v->aimed = doc->shot.camera;
     find_bounds(v);
     v->dirty = true;
-    v->unfitted = !doc->options.camera;
+    v->unfitted = !doc->options.camera || doc->added;
+    v->comparison.looks[0].index = v->comparison.looks[1].index = -1;
     double first, length;
     player_range(v, &first, &length);
     v->player.speed = length > 0 ? length / 4 : 100;
@@ -82,18 +87,40 @@ bool stage_open(view *v, document *doc) {
     return false;
 }
 
-void stage_reload(view *v) {
-    char *words = document_words(v->doc, &v->shot);
-    const char *list[512];
-    uint32_t count = 0;
-    for (char *at = words; at && *at && count < 512; at += strcspn(at, "\n")) {
+/* Words, one a line, which are freed, and files behind them. */
+static void open_text(view *v, char *words, const char *const *files, uint32_t count) {
+    enum { MOST = 512 };
+    const char *list[MOST];
+    uint32_t said = 0, added = 0;
+    for (char *at = words; at && *at && said < MOST; at += strcspn(at, "\n")) {
         if (*at == '\n')
             *at++ = '\0';
-        list[count++] = at;
+        list[said++] = at;
+    }
+    while (said + added < MOST && added < count) {
+        list[said + added] = files[added];
+        added++;
     }
     if (words)
-        loader_start(v->loader, list, count);
+        loader_add(v->loader, list, said + added, added);
     free(words);
+}
+
+void stage_reload(view *v) {
+    open_text(v, document_words(v->doc, &v->shot), NULL, 0);
+}
+
+void stage_add(view *v, const char *const *files, uint32_t count) {
+    v->hands.reopening = false;
+    if (v->open && document_joins(v->doc))
+        open_text(v, document_joined(v->doc, &v->shot), files, count);
+    else
+        loader_start(v->loader, files, count);
+}
+
+void stage_remove(view *v, const char *file) {
+    v->hands.reopening = false;
+    open_text(v, document_without(v->doc, &v->shot, file), NULL, 0);
 }
 
 /* ---- what the host draws ----------------------------------------------------------------- */
@@ -175,6 +202,29 @@ static bool fit_view(view *v, lao_view of, uint32_t width, uint32_t height) {
     return lao_view_resize(v->session.context, of, width, height) == LAO_OK;
 }
 
+static bool has_contours(const document *doc) {
+    const double *widths = doc->options.surface.contours;
+    return doc->command == CLI_SURFACE && (widths[0] > 0 || widths[1] > 0);
+}
+
+bool stage_aim(view *v, const cli_shot *shot) {
+    cli_wall *wall = &v->doc->wall;
+    bool ok = true;
+    if (v->doc->command == CLI_SURFACE)
+        cli_wall_focus(wall, shot);
+    if (!has_contours(v->doc) || memcmp(&v->aimed, &shot->camera, sizeof v->aimed) == 0)
+        return true;
+    compare_lock(v->compare);
+    ok = cli_wall_aim(wall, shot);
+    compare_unlock(v->compare);
+    for (int i = 0; i < 2 && ok; i++) {
+        if (wall->contours[i])
+            ok = cli_session_renew(&v->session, v->doc->scene, wall->contours[i]);
+    }
+    v->aimed = shot->camera;
+    return ok;
+}
+
 /* Sets of a small picture: one sample per pixel. Kept by the caller for the frame. */
 static void lighten(const view *v, lao_set *sets, lao_settings *settings, uint32_t count) {
     for (uint32_t i = 0; i < count; i++) {
@@ -222,6 +272,10 @@ static bool render(view *v, cli_shot *shot, bool small) {
     memset(&color, 0, sizeof color);
     memset(&depth, 0, sizeof depth);
     cli_shot_aim(v->doc->scene, shot);
+    if (small && v->doc->command == CLI_SURFACE) /* contours are made anew when it rests */
+        cli_wall_focus(&v->doc->wall, shot);
+    else
+        stage_aim(v, shot);
     multiply(shot->projection, shot->view, clip);
     make_axes(v, clip, boxes);
     memcpy(sets, v->session.sets, count * sizeof *sets);
@@ -234,6 +288,7 @@ static bool render(view *v, cli_shot *shot, bool small) {
     bool ok = fit_view(v, frame.view, shot->width, shot->height) &&
               w->backend->canvas(w, slot, shot->width, shot->height, shot->background, boxes,
                                  v->axes ? 3 : 0, &color, &depth, &frame.commands);
+    /* quote frame */
     import.image = "host_depth";
     import.source = depth;
     frame.target = color;
@@ -242,6 +297,7 @@ static bool render(view *v, cli_shot *shot, bool small) {
     if (own)
         frame.background[3] = 0; /* what the host has drawn shows between the lines */
     ok = ok && lao_render(v->session.context, &frame) == LAO_OK;
+    /* quote end */
     if (ok && v->ground) {
         window_ground g = make_ground(v, clip);
         w->backend->ground(w, slot, &g);
@@ -322,9 +378,11 @@ void stage_fit(view *v) {
     }
     camera_fit_begin(&fit, direction, up, (double)v->picture.width / fmax(1, v->picture.height),
                      0.05, pose->fovy);
-    for (uint32_t s = 0; s < v->doc->scene->count; s++)
-        camera_fit_add(&fit, v->doc->scene->sets[s].lines.points,
-                       v->doc->scene->sets[s].lines.point_count);
+    for (uint32_t s = 0; s < v->doc->scene->count; s++) {
+        const cli_set *set = &v->doc->scene->sets[s];
+        if (!set->overlay)
+            camera_fit_add(&fit, set->lines.points, set->lines.point_count);
+    }
     camera_fit_end(&fit, pose);
     for (int k = 0; k < 3; k++) {
         pose->eye[k] += v->doc->scene->origin[k];
@@ -386,6 +444,7 @@ bool stage_save(view *v, const char *path, uint32_t width, uint32_t height) {
     shot.width = width;
     shot.height = height;
     cli_shot_aim(v->doc->scene, &shot);
+    stage_aim(v, &shot);
     v->window.backend->wait(&v->window);
     memset(&session.view, 0, sizeof session.view);
     bool ok =

@@ -15,6 +15,7 @@ extern "C" {
 #include <map>
 #include <string>
 #include <string.h>
+#include <vector>
 
 namespace {
 
@@ -58,7 +59,7 @@ void look(float scale) {
     style.FrameRounding = 3;
     style.GrabRounding = 3;
     style.WindowBorderSize = 0;
-    style.FramePadding = ImVec2(6, 3);
+    style.FramePadding = ImVec2(5, 3);
     style.ItemSpacing = ImVec2(7, 5);
     style.ScrollbarSize = 12;
     style.Colors[ImGuiCol_WindowBg] = ImVec4(background[0], background[1], background[2], 1);
@@ -262,6 +263,11 @@ void ui_text(const char *text) {
     ImGui::TextUnformatted(text);
 }
 
+void ui_label(const char *text) {
+    ImGui::AlignTextToFramePadding();
+    ImGui::TextUnformatted(text);
+}
+
 void ui_text_wrapped(const char *text) {
     ImGui::PushTextWrapPos(0);
     ImGui::TextUnformatted(text);
@@ -297,11 +303,28 @@ bool ui_choice(const char *label, bool chosen) {
 }
 
 bool ui_combo(const char *label, int *chosen, const char *choices) {
-    std::string items;
-    for (const char *c = choices; *c; c++)
-        items += *c == '|' ? '\0' : *c;
-    items += '\0';
-    return placed(label, ImGui::Combo(label, chosen, items.c_str()));
+    std::vector<std::string> items(1);
+    for (const char *c = choices; *c; c++) {
+        if (*c == '|')
+            items.emplace_back();
+        else
+            items.back() += *c;
+    }
+    const char *shown = *chosen >= 0 && *chosen < (int)items.size() ? items[*chosen].c_str() : "";
+    bool changed = false;
+    if (!ImGui::BeginCombo(label, shown, ImGuiComboFlags_HeightLarge))
+        return placed(label, false);
+    for (int i = 0; i < (int)items.size(); i++) {
+        bool now = ImGui::Selectable(items[i].c_str(), i == *chosen);
+        if (placed((std::string(label) + " " + items[i]).c_str(), now)) {
+            changed = i != *chosen;
+            *chosen = i;
+        }
+        if (i == *chosen && ImGui::IsWindowAppearing())
+            ImGui::SetScrollHereY();
+    }
+    ImGui::EndCombo();
+    return changed;
 }
 
 bool ui_slider(const char *label, float *value, float low, float high, const char *format) {
@@ -309,9 +332,9 @@ bool ui_slider(const char *label, float *value, float low, float high, const cha
         label, ImGui::SliderFloat(label, value, low, high, format, ImGuiSliderFlags_AlwaysClamp));
 }
 
-bool ui_slider_int(const char *label, int *value, int low, int high) {
+bool ui_slider_int(const char *label, int *value, int low, int high, const char *format) {
     return placed(label,
-                  ImGui::SliderInt(label, value, low, high, "%d", ImGuiSliderFlags_AlwaysClamp));
+                  ImGui::SliderInt(label, value, low, high, format, ImGuiSliderFlags_AlwaysClamp));
 }
 
 bool ui_drag(const char *label, float *value, float speed, float low, float high,

@@ -62,6 +62,7 @@ void ui_group_end(void);
 /* What tests call the widgets that follow, whose own labels say little; NULL: their labels. */
 void ui_widget_name(const char *name);
 void ui_text(const char *text);
+void ui_label(const char *text); /* on the line of the widget beside it */
 void ui_text_wrapped(const char *text);
 void ui_text_dim(const char *text); /* wrapped */
 void ui_text_error(const char *text);
@@ -73,7 +74,7 @@ bool ui_choice(const char *label, bool chosen);
 /* choices: "a|b|c" */
 bool ui_combo(const char *label, int *chosen, const char *choices);
 bool ui_slider(const char *label, float *value, float low, float high, const char *format);
-bool ui_slider_int(const char *label, int *value, int low, int high);
+bool ui_slider_int(const char *label, int *value, int low, int high, const char *format);
 /* Dragged without an end; steps of `speed`. */
 bool ui_drag(const char *label, float *value, float speed, float low, float high,
              const char *format);

@@ -1,5 +1,6 @@
 /* The viewer's state, and who changes it: stage.c draws a document into the window, input.c takes
- * pointer and keys, player.c the time, pick.c what was clicked, panel*.c the user interface. */
+ * pointer and keys, player.c the time, pick.c what was clicked, hands.c what is done with that,
+ * film.c videos, panel*.c the user interface. */
 #ifndef LINEAO_VIEW_VIEW_H
 #define LINEAO_VIEW_VIEW_H
 
@@ -8,9 +9,10 @@
 #include "loader.h"
 #include "pick.h"
 #include "ui.h"
+#include "video.h"
 #include "window.h"
 
-enum { BOOKMARKS = 8, PATH_SIZE = 1024 };
+enum { BOOKMARKS = 8, PATH_SIZE = 1024, HANDS_UNDO = 16, HANDS_TEXT = 160 };
 
 /* How a picture in the window is made while it moves. */
 typedef struct steady {
@@ -31,7 +33,32 @@ typedef struct pointer {
     double x, y, pressed_at[2]; /* px */
     int button;                 /* that was pressed on the picture; -1: none */
     bool moved, shift;          /* since it was pressed */
+    bool fresh;                 /* what it is on has not been looked for */
 } pointer;
+
+/* What is placed where something was picked. */
+typedef struct hands {
+    char *undo[HANDS_UNDO]; /* owned: the words of a tree, or the value of --focus, before each */
+    uint32_t count;
+    bool reopening;                  /* what is being opened is this document, changed */
+    bool pathing;                    /* the next click says where a path begins that ends there: */
+    double end[3];                   /* mm, absolute */
+    char focus[HANDS_TEXT];          /* value of --focus */
+    float sharp, radius, risk, lens; /* mm */
+    bool stale;                      /* a slider has been moved, and not yet let go */
+} hands;
+
+/* A video that is being made. */
+typedef struct film {
+    char path[PATH_SIZE];
+    int count, fps, done; /* frames */
+    bool running;
+    cli_video video;
+    cli_session session; /* the window's, with a view of its own */
+    cli_shot shot;
+    camera_pose camera; /* of the first frame */
+    double start;       /* its time, ms */
+} film;
 
 /* How two pictures are shown side by side. */
 typedef struct comparison {
@@ -43,7 +70,7 @@ typedef struct comparison {
     double divider; /* in parts of the picture's width */
     bool ready;     /* both are in the window's slots */
     int size[2][2];
-    int64_t bits; /* that differ; -1: sizes do */
+    compare_count count;
 } comparison;
 
 typedef struct view {
@@ -58,6 +85,7 @@ typedef struct view {
     bool open; /* the session is */
     lao_view moving_view;
     cli_shot shot, fitted; /* fitted: as the document was opened */
+    camera_pose aimed;     /* for which contours were made */
     float bounds[2][3];    /* mm about the scene's origin */
 
     window_rect picture;         /* where in the window; px */
@@ -72,7 +100,10 @@ typedef struct view {
     steady steady;
     player player;
     pointer pointer;
-    picked picked;
+    picked picked, hovered; /* hovered: of a tree alone */
+    bool hovered_flat;      /* in the 2D view */
+    hands hands;
+    film film;
     lao_lines picked_lines; /* the selected line once more, on top */
     compare *compare;       /* NULL: there is one picture */
     comparison comparison;
@@ -95,6 +126,8 @@ bool stage_open(view *v, document *doc);
 void stage_close(view *v);
 /* Draws the document into its canvas if that is out of date. */
 void stage_draw(view *v);
+/* Makes anew what belongs to a camera: the depths in focus, contours. False: reported. */
+bool stage_aim(view *v, const cli_shot *shot);
 /* Lays the canvas into the window. */
 void stage_show(view *v);
 /* The time has changed: what depends on it goes up. */
@@ -110,6 +143,9 @@ bool stage_save(view *v, const char *path, uint32_t width, uint32_t height);
 void stage_select(view *v);
 /* Opens the same document again with what was edited. */
 void stage_reload(view *v);
+/* Opens files beside what is open, where that can be; takes one of several away again. */
+void stage_add(view *v, const char *const *files, uint32_t count);
+void stage_remove(view *v, const char *file);
 /* Where a place (mm, absolute) is in the window. False: behind the eye. */
 bool stage_place(const view *v, const double at[3], float place[2]);
 /* Of the whole document: its middle (absolute) and the axis that is up. */
@@ -118,8 +154,39 @@ void stage_up(const view *v, double axis[3]);
 /* ---- input.c ---- */
 
 void input_attach(view *v);
+/* Finds what the pointer is on, in a frame of the user interface. */
+void input_hover(view *v);
 /* Draws of the keys table, for the panel. */
 uint32_t input_keys(uint32_t i, const char **key, const char **help);
+
+/* ---- hands.c ---- */
+
+/* A document was opened: sizes that suit it. */
+void hands_begin(view *v);
+/* What could be taken back cannot any more. */
+void hands_forget(view *v);
+/* A click while a path is being placed; the pointer's ray, mm, absolute. */
+void hands_click(view *v, const double from[3], const double to[3]);
+/* Of the picked place; of a focus that is on; of the tab of the tree. */
+void hands_buttons(view *v);
+void hands_focus(view *v);
+void hands_tree(view *v);
+void hands_marks(const view *v);
+
+/* ---- film.c ---- */
+
+/* Does anything move? */
+bool film_possible(const view *v);
+/* Begins to write v->film.path. False: reported. */
+bool film_start(view *v);
+/* Draws the next frame, between two frames of the window. */
+void film_go_on(view *v);
+void film_cancel(view *v);
+/* The command line that makes the same video; for free(). */
+char *film_command(const view *v);
+/* The progress, over the picture; the part of the tab Save. */
+void film_panel(view *v);
+void film_widgets(view *v);
 
 /* ---- player.c ---- */
 
@@ -131,6 +198,7 @@ void player_toggle(view *v);
 void player_stop(view *v);
 void player_step(view *v, int steps);
 void player_go(view *v, double time);
+void player_pace(view *v, double factor); /* faster above 1 */
 void player_panel(view *v, window_rect place);
 
 /* ---- panel.c ---- */
@@ -138,7 +206,13 @@ void player_panel(view *v, window_rect place);
 /* The user interface of a frame; says where the picture goes. */
 void panel_draw(view *v);
 void panel_settings(view *v);
+/* The widget of a setting, and its help. */
+bool panel_edit(const lao_setting_row *row, float *value);
+void panel_explain(const lao_setting_row *row);
 void panel_tree(view *v);
+/* What the pointer is on now, in either view of a tree. */
+void tree_hover(view *v, const picked *at);
+void tree_marks(const view *v);
 
 /* ---- panel_compare.c ---- */
 

@@ -156,6 +156,7 @@ static double now(void *user) {
     return glfwGetTime();
 }
 
+/* quote lend */
 static bool lend(window *w, lao_backend *out) {
     lao_gl_desc desc;
     (void)w;
@@ -164,6 +165,7 @@ static bool lend(window *w, lao_backend *out) {
     desc.now = now;
     return lao_gl_backend(&desc, out) == LAO_OK || cli_fail("gl: the backend refused its context");
 }
+/* quote end */
 
 /* ---- frames ------------------------------------------------------------------------------ */
 
@@ -225,6 +227,7 @@ static void end_drawing(const window_gl *gl) {
     gl->BindFramebuffer(GL_FRAMEBUFFER, 0);
 }
 
+/* quote images */
 static lao_image lend_texture(GLuint name, const gl_slot *slot) {
     lao_image image;
     memset(&image, 0, sizeof image);
@@ -234,6 +237,7 @@ static lao_image lend_texture(GLuint name, const gl_slot *slot) {
     image.present = 1;
     return image;
 }
+/* quote end */
 
 static bool canvas(window *w, int index, uint32_t width, uint32_t height, const float paper[4],
                    const window_box *boxes, int count, lao_image *color, lao_image *depth,

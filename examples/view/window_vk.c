@@ -466,6 +466,7 @@ static void close(window *w) {
     w->glfw = NULL;
 }
 
+/* quote lend */
 static bool lend(window *w, lao_backend *out) {
     const host_vk *host = w->vk->host;
     PFN_vkGetInstanceProcAddr get_proc = host_vk_get_instance_proc(host);
@@ -481,6 +482,7 @@ static bool lend(window *w, lao_backend *out) {
     desc.frames_in_flight = FRAMES;
     return lao_vk_backend(&desc, out) == LAO_OK || cli_fail("vk: the backend refused its device");
 }
+/* quote end */
 
 void window_vk_interface(const window *w, ui_vulkan *out) {
     memset(out, 0, sizeof *out);
@@ -582,6 +584,7 @@ static void push(window_vk *vk, VkPipeline pipeline, const void *data, uint32_t 
                        VK_SHADER_STAGE_VERTEX_BIT | VK_SHADER_STAGE_FRAGMENT_BIT, 0, size, data);
 }
 
+/* quote images */
 /* An image of ours as lineao shall see it: it comes as our last drawing left it, and goes back for
  * the next one. The barriers between are lineao's. */
 static lao_image lend_image(const host_vk_image *image, vk_use before, vk_use after) {
@@ -602,6 +605,7 @@ static lao_image lend_image(const host_vk_image *image, vk_use before, vk_use af
     lent.access_after = after.access;
     return lent;
 }
+/* quote end */
 
 static bool canvas(window *w, int index, uint32_t width, uint32_t height, const float paper[4],
                    const window_box *boxes, int count, lao_image *color, lao_image *depth,

@@ -276,7 +276,7 @@ static void test_info_tree(void **state) {
     write_text("ring.swc", "1 1 0 0 0 2 2\n2 3 0 0 4 1.5 1\n");
     expect_fault(RUN("info ring.swc"), 1, "cycle");
     expect_fault(RUN("info tree.swc --unit mile"), 2, "mile");
-    expect_fault(RUN("render tree.swc -o tree.png"), 1, "vessel tree");
+    expect_fault(RUN("render tree.swc --as lines -o tree.png"), 1, "vessel tree");
 }
 
 /* An open box of two triangles, one of them told with vertices of its own. */
@@ -437,6 +437,8 @@ static void test_videos(void **state) {
          path[4096];
     struct stat status;
     (void)state;
+    assert_non_null(before);
+    assert_non_null(here);
     mkdir("bin", 0755);
     remove("bin/ffmpeg"); /* of a run that was stopped */
     assert_true(snprintf(path, sizeof path, "%s/bin", here) < (int)sizeof path);

@@ -44,9 +44,9 @@ static void write_tube(const char *path, int inward, double scale) {
     for (int j = 0; j < LONG; j++) {
         for (int i = 0; i < ROUND; i++) {
             int a = j * ROUND + i + 1, b = j * ROUND + (i + 1) % ROUND + 1;
-            fprintf(file, inward ? "f %d %d %d\nf %d %d %d\n" : "f %d %d %d\nf %d %d %d\n", a,
-                    inward ? b + ROUND : b, inward ? b : b + ROUND, a,
-                    inward ? a + ROUND : b + ROUND, inward ? b + ROUND : a + ROUND);
+            fprintf(file, "f %d %d %d\nf %d %d %d\n", a, inward ? b + ROUND : b,
+                    inward ? b : b + ROUND, a, inward ? a + ROUND : b + ROUND,
+                    inward ? b + ROUND : a + ROUND);
         }
     }
     assert_int_equal(fclose(file), 0);
@@ -439,6 +439,25 @@ static void volume_as_mesh(void **state) {
     expect_fault(RUN("surface duct.vtk --lines line.vtk -o x.png"), 2, "--lines");
 }
 
+/* A mesh of too many triangles is decimated, keeps its size, and that is said. */
+static void too_many_triangles(void **state) {
+    (void)state;
+    write_tube("tube.obj", 0, 1);
+    program_run run = RUN("surface tube.obj --triangles 600 --json --vertices v.json");
+    assert_int_equal(run.code, 0);
+    assert_non_null(strstr(run.out, "of 2400 triangles are left; --triangles says how many"));
+    cJSON *report = cJSON_Parse(run.out);
+    double area = 2 * 3.141592653589793 * radius * length;
+    assert_true(number_of(report, "triangles") > 300 && number_of(report, "triangles") <= 600);
+    assert_true(fabs(number_of(report, "area") - area) < 0.06 * area);
+    cJSON_Delete(report);
+    program_free(&run);
+    run = RUN("surface tube.obj --triangles 2400 --json");
+    assert_null(strstr(run.out, "triangles are left"));
+    program_free(&run);
+    expect_fault(RUN("surface tube.obj --triangles 99 -o x.png"), 2, "--triangles");
+}
+
 /* ---- what is drawn on top ---------------------------------------------------------------- */
 
 /* Legends, a colour map for the wall and contours change the picture, alike on both backends. */
@@ -536,15 +555,11 @@ static int leave(void **state) {
 
 int main(int argc, char **argv) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(vertices_of_a_tube),
-        cmocka_unit_test(distances_of_a_tube),
-        cmocka_unit_test(dump_of_a_tube),
-        cmocka_unit_test(uses),
-        cmocka_unit_test(tree_as_mesh),
-        cmocka_unit_test(volume_as_mesh),
-        cmocka_unit_test(looks),
-        cmocka_unit_test(outlines),
-        cmocka_unit_test(faults),
+        cmocka_unit_test(vertices_of_a_tube), cmocka_unit_test(distances_of_a_tube),
+        cmocka_unit_test(dump_of_a_tube),     cmocka_unit_test(uses),
+        cmocka_unit_test(tree_as_mesh),       cmocka_unit_test(volume_as_mesh),
+        cmocka_unit_test(too_many_triangles), cmocka_unit_test(looks),
+        cmocka_unit_test(outlines),           cmocka_unit_test(faults),
     };
     program = argc > 1 ? argv[1] : "lineao";
     return cmocka_run_group_tests(tests, enter, leave);

@@ -1,7 +1,7 @@
 /* `lineao vessel` keeps its contract: trees, layouts, distances, cuts and cameras come out as files
  * whose numbers agree with each other and with the shapes that were asked for, on both backends
- * alike; the layout stands beside the tree, and what is at risk is marked in both; nothing is drawn
- * unless a picture, a dump or timings are asked for; wrong usage is one line.
+ * alike; the layout stands beside the tree or alone, and what is at risk is marked in both; nothing
+ * is drawn unless a picture, a dump or timings are asked for; wrong usage is one line.
  */
 #include "program.h"
 
@@ -342,8 +342,8 @@ static void test_looks(void **state) {
         "--set layout_ph=0 --set width=2",
         "--set field_shadow=on",
         "--subtract sphere:8,18,-1100,4 --shape-color nearest",
-        "--union ellipsoid:0,10,-1100,9,14,9 --subtract "
-        "sphere:0,10,-1090,9 --union tree --shape-color #804020",
+        ("--union ellipsoid:0,10,-1100,9,14,9 --subtract "
+         "sphere:0,10,-1090,9 --union tree --shape-color #804020"),
         "--layout-weight near --target 0,0,-1100,1 --layout n.json"};
     (void)state;
     for (size_t i = 0; i < sizeof looks / sizeof *looks; i++)
@@ -369,6 +369,74 @@ static void read_pixels(const char *path, pixels *out) {
     char error[IMAGE_ERROR_SIZE];
     if (!image_read_png(path, 3, &out->width, &out->height, &out->rgb, error))
         fail_msg("%s", error);
+}
+
+/* The layout drawn by the backend, beside the picture and without one: the same for both backends,
+ * whatever the camera; where the trunk is, its colour. */
+static void test_layout_picture(void **state) {
+    pixels gl, vk, alone;
+    size_t ink = 0;
+    (void)state;
+    expect_ok(RUN("vessel " Y "-o seen.png --layout gl.png --layout l.svg --color #c02020"));
+    expect_ok(RUN("vessel " Y "--layout vk.png --backend vk --color #c02020"));
+    expect_ok(
+        RUN("vessel y.swc --unit mm " SMALL "--layout alone.png --view axial --color #c02020"));
+    assert_true(exists("seen.png") && exists("l.svg"));
+    read_pixels("gl.png", &gl);
+    read_pixels("vk.png", &vk);
+    read_pixels("alone.png", &alone);
+    assert_int_equal(gl.width, 96);
+    assert_int_equal(gl.height, 72);
+    assert_memory_equal(gl.rgb, vk.rgb, 96 * 72 * 3);
+    assert_memory_equal(gl.rgb, alone.rgb, 96 * 72 * 3);
+    for (size_t i = 0; i < 96 * 72; i++)
+        ink += gl.rgb[3 * i] == 0xc0 && gl.rgb[3 * i + 1] == 0x20 && gl.rgb[3 * i + 2] == 0x20;
+    assert_in_range(ink, 40, 96 * 72 / 3);
+    free(gl.rgb);
+    free(vk.rgb);
+    free(alone.rgb);
+    expect_fault(RUN("vessel " Y "--layout l.bmp"), 2, ".png");
+}
+
+/* Built by the device, the field has the CPU's bits: every number of a dump and every pixel, of a
+ * tree cut or not, by both backends. */
+static void test_device_field(void **state) {
+    static const char *const more[2] = {"", "--union tree --subtract sphere:4,14,-1098,4 "};
+    (void)state;
+    for (int cut = 0; cut < 2; cut++) {
+        dump cpu, device;
+        pixels a, b;
+        expect_ok(RUN("vessel " Y BARE "%s--dump cpu.exr -o cpu.png", more[cut]));
+        read_dump("cpu.exr", &cpu);
+        read_pixels("cpu.png", &a);
+        for (int vk = 0; vk < 2; vk++) {
+            expect_ok(RUN("vessel " Y BARE
+                          "%s--dump dev.exr -o dev.png --field device --backend %s",
+                          more[cut], vk ? "vk" : "gl"));
+            read_dump("dev.exr", &device);
+            read_pixels("dev.png", &b);
+            assert_int_equal(cpu.count, device.count);
+            assert_memory_equal(cpu.segment, device.segment, 4 * cpu.count);
+            assert_memory_equal(cpu.dmin, device.dmin, 4 * cpu.count);
+            for (int k = 0; k < 3; k++) {
+                assert_memory_equal(cpu.p[k], device.p[k], 4 * cpu.count);
+                assert_memory_equal(cpu.n[k], device.n[k], 4 * cpu.count);
+            }
+            assert_memory_equal(a.rgb, b.rgb, 3 * (size_t)a.width * a.height);
+            image_exr_free(&device.image);
+            free(b.rgb);
+        }
+        image_exr_free(&cpu.image);
+        free(a.rgb);
+    }
+    program_run run = RUN("vessel " Y "--field device --layout d.png --json");
+    assert_int_equal(run.code, 0);
+    cJSON *json = cJSON_Parse(run.out);
+    const cJSON *by = cJSON_GetObjectItem(cJSON_GetObjectItem(json, "grid"), "by");
+    assert_string_equal(cJSON_GetStringValue(by), "device");
+    cJSON_Delete(json);
+    program_free(&run);
+    expect_fault(RUN("vessel " Y "--field gpu -o x.png"), 2, "cpu");
 }
 
 /* How many pixels of a rectangle differ. */
@@ -594,13 +662,14 @@ static int leave(void **state) {
 
 int main(int argc, char **argv) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_help),         cmocka_unit_test(test_faults),
-        cmocka_unit_test(test_dump),         cmocka_unit_test(test_cuts),
-        cmocka_unit_test(test_cut_by_files), cmocka_unit_test(test_layout_and_tree),
-        cmocka_unit_test(test_path),         cmocka_unit_test(test_cameras),
-        cmocka_unit_test(test_looks),        cmocka_unit_test(test_link),
-        cmocka_unit_test(test_risk),         cmocka_unit_test(test_legend),
-        cmocka_unit_test(test_implied),      cmocka_unit_test(test_no_gpu),
+        cmocka_unit_test(test_help),           cmocka_unit_test(test_faults),
+        cmocka_unit_test(test_dump),           cmocka_unit_test(test_cuts),
+        cmocka_unit_test(test_cut_by_files),   cmocka_unit_test(test_layout_and_tree),
+        cmocka_unit_test(test_path),           cmocka_unit_test(test_cameras),
+        cmocka_unit_test(test_layout_picture), cmocka_unit_test(test_device_field),
+        cmocka_unit_test(test_looks),          cmocka_unit_test(test_link),
+        cmocka_unit_test(test_risk),           cmocka_unit_test(test_legend),
+        cmocka_unit_test(test_implied),        cmocka_unit_test(test_no_gpu),
     };
     if (argc < 2)
         return 1;

@@ -244,6 +244,10 @@ static void too_many_settings(tables *t) {
     t->module.setting_count = 65;
 }
 
+static void too_many_textures(tables *t) {
+    t->shaders[0].texture_count = LAO_MAX_READS + 1;
+}
+
 static const fault faults[] = {
     {first_repeats_with_none, "pass 'first' has no row before it to repeat with"},
     {items_unknown, "image 'a' is of an unknown kind of items"},
@@ -269,6 +273,7 @@ static const fault faults[] = {
     {reads_what_it_writes_by_index, "pass 'last' reads what it writes: 'kept'"},
     {reads_what_it_writes_in_other, "pass 'third' reads what it writes: 'c'"},
     {image_unused, "no pass uses image 'c'"},
+    {too_many_textures, "shader 's' of pass 'first' has more textures than a pass can read"},
     {shader_missing, "pass 'up' has no shader 'no_such'"},
     {setting_unknown, "'up' asks for the unknown setting 'no_such'"},
     {setting_unknown_last, "'up' asks for the unknown setting 'no_such'"},

@@ -80,7 +80,7 @@ static void probe_fill(probe *p) {
         p->passes[i].when[1].compare = '=';
         p->passes[i].when[1].value = 1;
     }
-    p->passes[0].when[0].name = "probe_on"; /* of the first set */
+    p->passes[0].when[0].name = "probe_on"; /* of the first set that has it on */
     p->passes[0].when[0].compare = '=';
     p->passes[0].when[0].value = 1;
     p->module.name = "probe";
@@ -338,34 +338,90 @@ static void settings_of_the_module(void **state) {
     end(&f);
 }
 
+/* Lines share a G-buffer; objects are drawn and shaded set by set behind it. */
 static void sets_that_occlude_each_other(void **state) {
-    static const char *const order[] = {"lines_halo", "lines_halo", "measure",  "draw",
-                                        "level_zero", "level_one",  "level_up", "occlusion",
-                                        "shade",      "tint",       "over",     "resolve"};
+    static const struct {
+        const char *row;
+        uint32_t set;
+    } order[] = {{"lines_halo", 0}, {"lines_halo", 1}, {"level_zero", 0}, {"level_one", 0},
+                 {"level_up", 0},   {"occlusion", 0},  {"shade", 0},      {"measure", 0},
+                 {"draw", 0},       {"tint", 0},       {"measure", 2},    {"draw", 2},
+                 {"tint", 2},       {"over", 0},       {"resolve", 0}};
     fixture f;
     uint32_t lines = 0;
     (void)state;
     begin(&f);
     f.sets[0].lines = f.sets[1].lines = f.lines;
-    f.frame.set_count = 2;
+    f.sets[2].object = f.object;
+    f.frame.set_count = 3;
     f.frame.flags = LAO_FRAME_SHARED_OCCLUSION;
     assert_int_equal(lao_render(f.context, &f.frame), LAO_OK);
     assert_int_equal(core_seen.plan->step_count, sizeof order / sizeof order[0]);
     for (uint32_t i = 0; i < core_seen.plan->step_count; i++) {
         const lao_plan_step *step = &core_seen.plan->steps[i];
-        assert_string_equal(step->row->name, order[i]);
-        if (strcmp(order[i], "lines_halo") == 0) { /* the second keeps what the first drew */
-            assert_int_equal(step->set, lines);
+        assert_string_equal(step->row->name, order[i].row);
+        assert_int_equal(step->set, order[i].set);
+        if (strcmp(order[i].row, "lines_halo") == 0) { /* the second keeps what the first drew */
             assert_int_equal(step->colors[0].clear, lines == 0);
             assert_int_equal(step->depth.clear, lines == 0);
             lines++;
-        } else {
-            assert_int_equal(step->set, 0);
+        } else if (strcmp(order[i].row, "draw") == 0) { /* each clears its own images */
+            assert_int_equal(step->colors[0].clear, 1);
         }
     }
-    f.frame.flags = 0; /* a plan of its own: each set clears */
+    f.frame.flags = 0; /* a plan of its own: each set of lines clears */
     assert_int_equal(lao_render(f.context, &f.frame), LAO_OK);
     assert_int_equal(steps_of("occlusion", NULL), 2);
+    end(&f);
+}
+
+/* A set of objects alone leaves the lines' images as they are, unless it is the first one. */
+static void lines_are_drawn_where_there_are_any(void **state) {
+    static const uint32_t counts[3][2] = {{1, 1}, {2, 1}, {2, 1}}; /* of "shade", of "draw" */
+    fixture f;
+    (void)state;
+    begin(&f);
+    for (int i = 0; i < 3; i++) { /* lines, object; object, lines; nothing, object */
+        memset(f.sets, 0, sizeof f.sets);
+        f.sets[i == 1].lines.id = i < 2 ? f.lines.id : 0;
+        f.sets[i != 1].object = f.object;
+        f.frame.set_count = 2;
+        if (i == 2) { /* and a third that draws nothing */
+            f.frame.set_count = 3;
+        }
+        assert_int_equal(lao_render(f.context, &f.frame), LAO_OK);
+        assert_int_equal(steps_of("shade", NULL), counts[i][0]);
+        assert_int_equal(steps_of("draw", NULL), counts[i][1]);
+    }
+    end(&f);
+}
+
+/* A row of the whole frame goes by the first set that asks for it, with that set's settings. */
+static void a_frame_row_follows_the_set_that_asks(void **state) {
+    const lao_plan_step *step = NULL;
+    probe_settings off, on;
+    const void *given[2][1];
+    fixture f;
+    (void)state;
+    begin(&f);
+    memset(&off, 0, sizeof off);
+    memset(&on, 0, sizeof on);
+    off.set = 1; /* probe_on = 0 */
+    on.set = 2;
+    on.probe_gain = 5;
+    given[0][0] = &off;
+    given[1][0] = &on;
+    f.sets[0].module_settings = given[0];
+    f.sets[1].object = f.object;
+    f.sets[1].module_settings = given[1];
+    f.frame.set_count = 2;
+    assert_int_equal(lao_render(f.context, &f.frame), LAO_OK);
+    assert_int_equal(steps_of("over", &step), 1);
+    assert_int_equal(step->set, 1);
+    assert_int_equal(step->constants[2], 5);
+    on.set = 3;
+    assert_int_equal(lao_render(f.context, &f.frame), LAO_OK);
+    assert_int_equal(steps_of("over", NULL), 0);
     end(&f);
 }
 
@@ -553,6 +609,8 @@ int main(void) {
         cmocka_unit_test(a_step_finds_its_buffers),
         cmocka_unit_test(settings_of_the_module),
         cmocka_unit_test(sets_that_occlude_each_other),
+        cmocka_unit_test(lines_are_drawn_where_there_are_any),
+        cmocka_unit_test(a_frame_row_follows_the_set_that_asks),
         cmocka_unit_test(the_scene_holds_the_object),
         cmocka_unit_test(history_is_counted),
         cmocka_unit_test(world_undoes_the_view),

@@ -46,6 +46,7 @@ static fixture fixture_make(surface_shape shape, uint32_t flags, int analytic) {
     f.mesh = surface_build(&shape, flags, analytic);
     assert_int_equal(f.mesh.vertex_count, shape.vertex_count);
     assert_int_equal(vsf_buffers_make(NULL, &f.mesh, 0, &f.buffers), LAO_OK);
+    assert_true(shape.vertex_count > 0);
     f.s = (float *)malloc(sizeof(float) * shape.vertex_count);
     return f;
 }

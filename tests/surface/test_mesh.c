@@ -604,6 +604,84 @@ static void subdivision_is_loops(void **state) {
     surface_shape_free(&ico);
 }
 
+/* ---- decimation */
+
+/* The distance (mm) to a torus of these radii around z. */
+static double off_torus(const float *p, double ring, double tube) {
+    double r = hypot((double)p[0], (double)p[1]) - ring;
+    return hypot(r, (double)p[2]) - tube;
+}
+
+static void decimation_keeps_the_shape(void **state) {
+    static const uint32_t most[3] = {20000, 4000, 800};
+    surface_shape shape = surface_torus(5, 2, 200, 100);
+    const uint32_t n = shape.vertex_count;
+    float *values = (float *)malloc(2 * sizeof(float) * n);
+    vsf_attribute attribute = {"x and, of few, y", 2, values};
+    vsf_mesh_desc desc = surface_describe(&shape);
+    vsf_mesh mesh, coarser;
+    (void)state;
+    for (uint32_t i = 0; i < n; i++) {
+        values[2 * i] = shape.positions[3 * i];
+        values[2 * i + 1] = i % 7 ? NAN : shape.positions[3 * i + 1];
+    }
+    desc.attributes = &attribute;
+    desc.attribute_count = 1;
+    assert_int_equal(vsf_mesh_build(NULL, &desc, &mesh), LAO_OK);
+    for (int i = 0; i < 3; i++) {
+        double worst = 0, side;
+        assert_int_equal(vsf_mesh_decimate(NULL, &mesh, most[i], &coarser), LAO_OK);
+        assert_in_range(coarser.triangle_count, most[i] * 7 / 10, most[i]);
+        check_topology(&coarser);
+        assert_int_equal(coarser.info.open_edges + coarser.info.crowded_edges, 0);
+        assert_int_equal(coarser.info.parts, 1);
+        assert_true(fabs(coarser.info.area / mesh.info.area - 1) < 0.01);
+        assert_true(fabs(coarser.info.volume / mesh.info.volume - 1) < 0.03);
+        assert_int_equal(coarser.source_count, 0);
+        side = coarser.info.mean_edge;
+        for (uint32_t v = 0; v < coarser.vertex_count; v++) {
+            const float *p = coarser.positions + 3 * v, *value = coarser.attributes[0].values;
+            uint32_t from = coarser.vertex_sources[v];
+            assert_true(from < n);
+            worst = fmax(worst, fabs(off_torus(p, 5, 2)));
+            assert_true(fabs((double)p[0] - (double)shape.positions[3 * from]) < 2 * side);
+            assert_true(fabs((double)value[2 * v] - (double)p[0]) < side);
+            assert_true(!(fabs((double)value[2 * v + 1] - (double)p[1]) > 2 * side));
+        }
+        for (uint32_t t = 0; t < coarser.triangle_count; t++)
+            assert_true(coarser.triangle_sources[t] < mesh.triangle_count);
+        assert_true(worst < side * side / 16); /* the sag of an edge over the tube: side^2 / 8 R */
+        vsf_mesh_free(&coarser);
+    }
+    vsf_mesh_free(&mesh);
+    surface_shape_free(&shape);
+    free(values);
+}
+
+static void decimation_of_planes_and_faults(void **state) {
+    surface_shape plane = surface_saddle(0, 2, 40);
+    surface_host host;
+    vsf_host h = surface_host_make(&host);
+    vsf_mesh mesh = surface_build(&plane, 0, 0), coarser;
+    (void)state;
+    assert_int_equal(vsf_mesh_decimate(&h, &mesh, 500, &coarser), LAO_OK);
+    for (uint32_t v = 0; v < coarser.vertex_count; v++)
+        assert_true(fabsf(coarser.positions[3 * v + 2]) < 1e-6f &&
+                    coarser.normals[3 * v + 2] > 0.999f);
+    assert_int_equal(host.failures, 0);
+    vsf_mesh_free(&coarser);
+    assert_int_equal(vsf_mesh_decimate(&h, &mesh, 3, &coarser), LAO_ERROR_INVALID_ARGUMENT);
+    assert_int_equal(host.item, VSF_LOG_SETTING);
+    assert_int_equal(vsf_mesh_decimate(&h, NULL, 100, &coarser), LAO_ERROR_INVALID_ARGUMENT);
+    h = surface_host_make(&host);
+    host.cancel_at = 3;
+    assert_int_equal(vsf_mesh_decimate(&h, &mesh, 100, &coarser), LAO_ERROR_NOT_READY);
+    assert_int_equal(host.item, VSF_LOG_CANCELLED);
+    assert_int_equal(host.bytes, 0);
+    vsf_mesh_free(&mesh);
+    surface_shape_free(&plane);
+}
+
 /* ---- memory, cancelling, order of work, size */
 
 static void survives_every_failed_allocation(void **state) {
@@ -613,13 +691,14 @@ static void survives_every_failed_allocation(void **state) {
     for (uint32_t n = 1;; n++) {
         surface_host host;
         vsf_host h = surface_host_make(&host);
-        vsf_mesh mesh, finer;
+        vsf_mesh mesh, finer, coarser;
         vsf_buffers buffers;
         vsf_polylines lines;
         const float eye[4] = {0, 0, 1, 0};
         lao_result result;
         memset(&mesh, 0, sizeof mesh);
         memset(&finer, 0, sizeof finer);
+        memset(&coarser, 0, sizeof coarser);
         memset(&buffers, 0, sizeof buffers);
         memset(&lines, 0, sizeof lines);
         host.fail_at = n;
@@ -629,12 +708,15 @@ static void survives_every_failed_allocation(void **state) {
         if (result == LAO_OK)
             result = vsf_mesh_subdivide(&h, &mesh, 2, &finer);
         if (result == LAO_OK)
+            result = vsf_mesh_decimate(&h, &finer, 1000, &coarser);
+        if (result == LAO_OK)
             result = vsf_buffers_make(&h, &finer, 0, &buffers);
         if (result == LAO_OK)
             result =
                 vsf_feature_lines(&h, &finer, &buffers, eye, VSF_SUGGESTIVE_CONTOURS, 0, &lines);
         vsf_polylines_free(&lines);
         vsf_buffers_free(&buffers);
+        vsf_mesh_free(&coarser);
         vsf_mesh_free(&finer);
         vsf_mesh_free(&mesh);
         assert_int_equal(host.bytes, 0);
@@ -743,6 +825,8 @@ int main(void) {
         cmocka_unit_test(smoothing_takes_no_negative_weight),
         cmocka_unit_test(smoothing_refuses_and_stops),
         cmocka_unit_test(subdivision_is_loops),
+        cmocka_unit_test(decimation_keeps_the_shape),
+        cmocka_unit_test(decimation_of_planes_and_faults),
         cmocka_unit_test(survives_every_failed_allocation),
         cmocka_unit_test(cancels_and_ignores_the_order_of_work),
         cmocka_unit_test(a_fan_of_many_triangles),

@@ -187,6 +187,39 @@ static lao_v3 sheet_step(const texel *t, int dx, int dy, lao_v3 p, float z) {
     lao_v3 pa = za < SDV_FAR ? place_at(s, t->x + dx, t->y + dy, za) : p;
     return sdv_sheet_step(pb, p, pa, zb, z, za);
 }
+static lao_v3 drawn_step(const texel *t, int dx, int dy, const lao_v4 *position, lao_v3 p) {
+    const screen *s = t->s;
+    long b = place_of(s, 0, t->x - dx, t->y - dy), a = place_of(s, 0, t->x + dx, t->y + dy);
+    bool has_b = b >= 0 && sdv_is_covered(position[b].w);
+    bool has_a = a >= 0 && sdv_is_covered(position[a].w);
+    lao_v3 pb = has_b ? xyz(position[b]) : p, pa = has_a ? xyz(position[a]) : p;
+    return sdv_sheet_step(pb, p, pa, has_b ? sdv_depth_of(s->frame.view, pb) : SDV_FAR,
+                          sdv_depth_of(s->frame.view, p),
+                          has_a ? sdv_depth_of(s->frame.view, pa) : SDV_FAR);
+}
+
+void screen_drawn(const screen *s, const float *depth, lao_v4 *position, lao_v4 *normal) {
+    for (uint32_t k = 0; depth && k < texels(s, 0); k++) {
+        texel t = texel_make(s, 0, k);
+        float z = sdv_drawn_depth(s->frame.projection, depth[k]);
+        position[k] = lao_v4_make(0, 0, 0, -1);
+        if (z < SDV_FAR)
+            position[k] = with(place_at(s, t.x, t.y, z), 0);
+    }
+    for (uint32_t k = 0; k < texels(s, 0); k++) {
+        texel t = texel_make(s, 0, k);
+        lao_v3 p = xyz(position[k]);
+        lao_v2 slope = lao_pixel_slope(s->frame.ray, (float)t.x + 0.5f, (float)t.y + 0.5f);
+        lao_v3 d = lao_ray_direction(s->frame.world, slope, s->frame.depth.w);
+        normal[k] = zero();
+        if (sdv_is_covered(position[k].w))
+            normal[k] =
+                with(sdv_sheet_normal(drawn_step(&t, 1, 0, position, p),
+                                      drawn_step(&t, 0, 1, position, p), lao_v3_scale(d, -1)),
+                     0);
+    }
+}
+
 static float clamped_depth(const screen *s, int x, int y) {
     int w = (int)s->width - 1, h = (int)s->height - 1;
     lao_v4 d;
@@ -237,7 +270,8 @@ static void surface_zero(screen *s, const lao_v4 *position, const lao_v4 *normal
             covered = 0;
         }
         s->surface[k] = with(p, mark);
-        s->bgnormal[k] = s->facing[0][k] = with(n, 0);
+        s->bgnormal[k] = with(n, hit.w);
+        s->facing[0][k] = with(n, 0);
         s->place[0][k] = with(p, covered);
         s->tensor[0][k] = guide_of(&t, hit, n);
     }
@@ -458,9 +492,9 @@ void screen_parameterize(screen *s) {
 
 /* ---------------------------------------------------------------------------------------- ink */
 
-static float footprint(const screen *s, lao_v4 z, lao_v3 n, lao_v3 p, lao_v3 direction) {
+static float footprint(const screen *s, lao_v3 z, lao_v3 n, lao_v3 p, lao_v3 direction) {
     lao_v3 none = lao_v3_make(0, 0, 0);
-    return sdv_style_footprint(xyz(z), n, lao_v3_unit(xyz(s->frame.world.x), none),
+    return sdv_style_footprint(z, n, lao_v3_unit(xyz(s->frame.world.x), none),
                                lao_v3_unit(xyz(s->frame.world.y), none), direction, pixel_mm(s, p),
                                s->period);
 }
@@ -504,12 +538,17 @@ static lao_v4 ink(const screen *s, uint32_t k, lao_v4 hit, lao_v4 normal, const 
     float facing = -lao_v3_dot(n, direction), shadow = 0, now, shown, rest = 0;
     float tone = sdv_style_tone(facing, v[SDV_SETTING_ID_surface_ambient],
                                 v[SDV_SETTING_ID_surface_diffuse], 1);
-    float wide_u = footprint(s, s->along[0][k], n, p, direction);
-    float wide_v = footprint(s, s->across[0][k], n, p, direction);
+    lao_v3 z = sdv_lift(s->frame.world, lao_v3_make(s->uv[k].z, s->uv[k].w, 1), n, n);
+    float wide_u = footprint(s, z, n, p, direction);
+    float wide_v = footprint(s, lao_v3_cross(n, z), n, p, direction);
     float mark = marked(s, hit) ? v[SDV_SETTING_ID_mark_darkness] : 0.0f;
     lao_v4 before = s->recalled[0][k];
     if (!sdv_is_covered(hit.w)) {
-        tone = sdv_style_tone(facing, 0.5f, 0.5f, 1);
+        float reach = v[SDV_SETTING_ID_near_miss] > 1.5f
+                          ? 0
+                          : 0.01f * v[SDV_SETTING_ID_void_reach] * s->frame.depth.z;
+        tone = 1 - sdv_void_share(normal.w, reach, lao_max(wide_u, wide_v)) *
+                       (1 - sdv_style_tone(facing, 0.5f, 0.5f, 1));
         style = void_style == SDV_VOID_STIPPLE ? SDV_STYLE_STIPPLE
                 : void_style == SDV_VOID_HATCH ? SDV_STYLE_HATCH
                                                : SDV_STYLE_PLAIN;

@@ -30,6 +30,8 @@ bool screen_make(screen *s, uint32_t width, uint32_t height);
 void screen_free(screen *s);
 void screen_size(const screen *s, uint32_t level, uint32_t *width, uint32_t *height);
 
+/* What vessel_drawn makes of depth, or (NULL) of the positions that are there. */
+void screen_drawn(const screen *s, const float *depth, lao_v4 *position, lao_v4 *normal);
 /* In the order of the graph. position: world, cone (-1: nothing); normal: world. */
 void screen_background(screen *s, const lao_v4 *position, const lao_v4 *normal);
 void screen_guide(screen *s);

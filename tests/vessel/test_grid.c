@@ -1,7 +1,7 @@
 /* The grid of a tree's field holds what its description says: lists, nearest cells, distances and
    steps equal brute force; no sign is wrong; the order of work does not matter; a moved node
-   changes it to the bits of a full build, in a tenth of the time; what cannot be is refused and
-   nothing leaks. */
+   changes it to the bits of a full build, in a tenth of the time, be it the root of a thick trunk;
+   what cannot be is refused and nothing leaks. */
 #include "vessel_host.h"
 
 #include <math.h>
@@ -56,6 +56,8 @@ static void assert_same(const sdv_grid *a, const sdv_grid *b) {
     assert_memory_equal(a->ids, b->ids, a->id_count * sizeof *a->ids);
     assert_memory_equal(a->cells, b->cells, a->cell_count * sizeof *a->cells);
     assert_memory_equal(a->layer, b->layer, a->cell_count * sizeof *a->layer);
+    assert_memory_equal(a->occupied, b->occupied,
+                        (size_t)(a->size[0] + 31) / 32 * a->size[1] * a->size[2] * 4);
 }
 
 static void check_lists(const sdv_grid *g) {
@@ -209,7 +211,7 @@ static void order_does_not_matter(void **state) {
 
 static double seconds(void) {
     struct timespec now;
-    clock_gettime(CLOCK_MONOTONIC, &now);
+    clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &now); /* not what others run */
     return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
 }
 
@@ -267,55 +269,125 @@ static void leaving_the_box_builds_anew(void **state) {
     sdv_tree_free(&t);
 }
 
+/* Like trees of organs: short segments, radii a hundredth of the extent or less. */
+static sdv_tree organ_tree(uint32_t n) {
+    sdv_tree t = random_tree(11, n, 200, 2);
+    for (uint32_t i = 1; i < n; i++) { /* pull every node towards its parent */
+        const lao_v4 *a = t.nodes + t.parents[i];
+        t.nodes[i].x = a->x + 0.25f * (t.nodes[i].x - a->x);
+        t.nodes[i].y = a->y + 0.25f * (t.nodes[i].y - a->y);
+        t.nodes[i].z = a->z + 0.25f * (t.nodes[i].z - a->z);
+    }
+    return t;
+}
+/* A thick trunk of long edges (the first TRUNK nodes) with combs of thin, short ones. */
+enum { TRUNK = 9, COMBS = 40 };
+static sdv_tree comb_tree(uint32_t n) {
+    uint32_t seed = 5;
+    for (uint32_t i = 0; i < n; i++) {
+        bool trunk = i < TRUNK;
+        uint32_t parent = trunk ? i - 1 : i < TRUNK + COMBS ? i % TRUNK : i - COMBS;
+        double angle = 1.1 * ((i - TRUNK) % COMBS), step = i < TRUNK + COMBS ? 12 : 2.5;
+        float *p = positions + 3 * i;
+        const float *q = positions + 3 * (i ? parent : 0);
+        p[0] = trunk ? 0 : q[0] + (float)(cos(angle) * step + vessel_between(&seed, -1, 1));
+        p[1] = trunk ? 0 : q[1] + (float)(sin(angle) * step + vessel_between(&seed, -1, 1));
+        p[2] = trunk ? 25.0f * (float)i : q[2] + (float)vessel_between(&seed, -1, 1);
+        radii[i] = trunk ? 10 - 0.8f * (float)i : 0.4f;
+        if (i)
+            segments[i - 1] = (sdv_segment){parent, i};
+    }
+    sdv_tree t;
+    sdv_tree_desc desc = {n, positions, radii, n - 1, segments, 0, NULL, NULL, 0, 0};
+    assert_int_equal(sdv_tree_build(NULL, &desc, &t), LAO_OK);
+    return t;
+}
+
 static int by_value(const void *a, const void *b) {
     double x = *(const double *)a, y = *(const double *)b;
     return (x > y) - (x < y);
 }
-/* A tree like those of organs: short segments, radii a hundredth of the extent or less. */
+/* Seconds of a move of one node there and back by a hundredth of the extent: the less of both,
+   which what else runs disturbs least. */
+static double move_node(sdv_tree *t, uint32_t node, uint32_t *seed, sdv_grid *g) {
+    const lao_v4 home = t->nodes[node];
+    double extent = (double)g->cell * (double)g->size[2], least = INFINITY;
+    lao_v3 by = lao_v3_scale(vessel_direction(seed), (float)(0.01 * extent));
+    for (int i = 0; i < 2; i++) {
+        double start = seconds();
+        t->nodes[node] =
+            i ? home : lao_v4_make(home.x + by.x, home.y + by.y, home.z + by.z, home.w);
+        assert_int_equal(sdv_grid_update(NULL, t, &node, 1, g), LAO_OK);
+        least = g->rebuilt ? least : fmin(least, seconds() - start);
+    }
+    return least;
+}
+/* The trunk and a part of all others; the worst again while something else may have been to blame.
+ */
+static void measure_moves(const char *name, sdv_tree t, uint32_t resolution) {
+    enum { MOVES = 80, AGAIN = 4 };
+    double full = INFINITY, moves[MOVES], mean;
+    uint32_t seed = 3, count = 0;
+    sdv_grid g = build(&t, resolution);
+    for (uint32_t i = 0; i < MOVES; i++) {
+        uint32_t node = i < TRUNK ? i : i * (t.node_count / MOVES);
+        double start = seconds();
+        if (i % 16 == 0) {
+            sdv_grid fresh = build_like(&t, &g);
+            full = fmin(full, seconds() - start);
+            assert_same(&g, &fresh);
+            sdv_grid_free(&fresh);
+        }
+        double least = move_node(&t, node, &seed, &g);
+        for (int k = 0; k < AGAIN && isfinite(least) && least > 0.08 * full; k++)
+            least = fmin(least, move_node(&t, node, &seed, &g));
+        if (isfinite(least))
+            moves[count++] = least / full;
+    }
+    assert_in_range(count, MOVES / 2, MOVES);
+    qsort(moves, count, sizeof *moves, by_value);
+    double most = check_distances(&g, 5000, &mean);
+    printf(
+        "%s, %u^3, %u segments: built in %.1f ms; a moved node costs 1/%.0f of that, at most "
+        "1/%.1f; %.1f ids a near cell; far distances too great by %.2f cells on average, %.2f at "
+        "most\n",
+        name, resolution, t.segment_count, 1e3 * full, 1 / moves[count / 2], 1 / moves[count - 1],
+        (double)g.id_count / g.cell_count, mean, most);
+#ifndef __SANITIZE_ADDRESS__
+    assert_true(moves[count - 1] < 0.1);
+#endif
+    sdv_grid_free(&g);
+    sdv_tree_free(&t);
+}
 static void moving_is_fast(void **state) {
     (void)state;
-    enum { MOVES = 40 };
-    uint32_t seed = 3, resolutions[] = {64, 128};
-    for (int r = 0; r < 2; r++) {
-        uint32_t n = 2000;
-        sdv_tree t = random_tree(11, n, 200, 2);
-        double start, full = 1e9, moves[MOVES], mean, most;
-        sdv_grid g;
-        for (uint32_t i = 1; i < n; i++) { /* pull every node towards its parent */
-            const lao_v4 *a = t.nodes + t.parents[i];
-            t.nodes[i].x = a->x + 0.25f * (t.nodes[i].x - a->x);
-            t.nodes[i].y = a->y + 0.25f * (t.nodes[i].y - a->y);
-            t.nodes[i].z = a->z + 0.25f * (t.nodes[i].z - a->z);
-        }
-        for (int i = 0; i < 3; i++) {
-            start = seconds();
-            g = build(&t, resolutions[r]);
-            full = fmin(full, seconds() - start);
-            if (i < 2)
-                sdv_grid_free(&g);
-        }
-        for (int i = 0; i < MOVES; i++) {
-            uint32_t node = (uint32_t)vessel_between(&seed, 0, n);
-            t.nodes[node].x += (float)vessel_between(&seed, -1, 1);
-            t.nodes[node].y += (float)vessel_between(&seed, -1, 1);
-            start = seconds();
-            assert_int_equal(sdv_grid_update(NULL, &t, &node, 1, &g), LAO_OK);
-            moves[i] = g.rebuilt ? 0 : (seconds() - start) / full;
-        }
-        qsort(moves, MOVES, sizeof *moves, by_value);
-        most = check_distances(&g, 5000, &mean);
-        printf("%u^3, %u segments: built in %.1f ms; a moved node costs 1/%.0f of that, at most "
-               "1/%.1f; "
-               "%.1f ids a near cell; far distances too great by %.2f cells on average, %.2f at "
-               "most\n",
-               resolutions[r], n - 1, 1e3 * full, 1 / moves[MOVES / 2], 1 / moves[MOVES - 1],
-               (double)g.id_count / g.cell_count, mean, most);
-#ifndef __SANITIZE_ADDRESS__
-        assert_true(moves[MOVES / 2] < 0.1);
-#endif
-        sdv_grid_free(&g);
-        sdv_tree_free(&t);
+    for (uint32_t resolution = 64; resolution <= 128; resolution *= 2) {
+        measure_moves("branches everywhere", organ_tree(2000), resolution);
+        measure_moves("a thick trunk", comb_tree(3000), resolution);
     }
+}
+
+/* Every node of a trunk, far and near, alone and together; lists that grow and shrink. */
+static void moved_trunks_equal_a_full_build(void **state) {
+    (void)state;
+    uint32_t seed = 9;
+    sdv_tree t = comb_tree(400);
+    sdv_grid g = build(&t, 50);
+    for (uint32_t i = 0; i < 36; i++) {
+        uint32_t nodes[2] = {i % TRUNK, (i * 7) % 400}, count = 1 + i % 2;
+        for (uint32_t k = 0; k < count; k++) {
+            lao_v4 *p = t.nodes + nodes[k];
+            lao_v3 by = lao_v3_scale(vessel_direction(&seed), i % 3 ? 3.0f : 14.0f);
+            *p = lao_v4_make(0.7f * (p->x + by.x), 0.7f * (p->y + by.y), p->z + 0.3f * by.z,
+                             i % 4 ? p->w : 0.5f * p->w + (float)vessel_between(&seed, 0, 4));
+        }
+        assert_int_equal(sdv_grid_update(NULL, &t, nodes, count, &g), LAO_OK);
+        sdv_grid fresh = build_like(&t, &g);
+        assert_same(&g, &fresh);
+        sdv_grid_free(&fresh);
+    }
+    sdv_grid_free(&g);
+    sdv_tree_free(&t);
 }
 
 static void what_cannot_be_is_refused(void **state) {
@@ -393,7 +465,7 @@ static void memory_may_end(void **state) {
         assert_int_equal(host.failures, result != LAO_OK);
         assert_int_equal(host.bytes, 0);
     }
-    assert_int_equal(n, 16);
+    assert_int_equal(n, 22);
     sdv_tree_free(&t);
 }
 
@@ -405,6 +477,7 @@ int main(void) {
         cmocka_unit_test(order_does_not_matter),
         cmocka_unit_test(moved_nodes_equal_a_full_build),
         cmocka_unit_test(leaving_the_box_builds_anew),
+        cmocka_unit_test(moved_trunks_equal_a_full_build),
         cmocka_unit_test(moving_is_fast),
         cmocka_unit_test(what_cannot_be_is_refused),
         cmocka_unit_test(memory_may_end),

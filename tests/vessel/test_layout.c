@@ -1,6 +1,6 @@
 /* The reduced tree is binary with the ids that DESIGN.md 10 asks for; the layout is Algorithm 1 of
    L19 with the oracles of METHODS.md 8, for any tree, weight and size, fast; JSON and SVG say what
-   it is. */
+   it is, and as a tree in a plane it has every node on its edge, by its way along the vessel. */
 #include "vessel_host.h"
 
 #include <math.h>
@@ -357,13 +357,116 @@ static void radial_and_colours(void **state) {
     }
 }
 
+/* Where the drawing should have a reduced node. */
+static void expect_place(const case_ *c, const sdv_tree *flat, uint32_t k, float width,
+                         float height, bool radial) {
+    const lao_v4 *at = flat->nodes + c->reduced.ids[k];
+    double h = (double)c->layout.h[k], s = (double)c->layout.s[k], x, y;
+    double reach = 0.47 * (double)fminf(width, height);
+    x = radial ? 0.5 * (double)width + reach * (1 - s) * cos(6.283185307 * h)
+               : (double)width * (0.03 + 0.94 * h);
+    y = radial ? 0.5 * (double)height + reach * (1 - s) * sin(6.283185307 * h)
+               : (double)height * (0.03 + 0.94 * s);
+    assert_near(at->x, x, 1e-3);
+    assert_near(at->y, y, 1e-3);
+    assert_true(at->z == 0.0f);
+}
+static void check_drawing(const case_ *c, const sdv_drawing_desc *desc) {
+    const sdv_tree *t = &c->tree;
+    const sdv_reduced *r = &c->reduced;
+    sdv_tree flat;
+    float width = desc && desc->width > 0 ? desc->width : desc && desc->radial ? 150.0f : 200.0f;
+    float height = desc && desc->height > 0 ? desc->height : desc && desc->radial ? 150.0f : 100.0f;
+    uint32_t extra = 0;
+    assert_int_equal(sdv_layout_tree(NULL, t, r, &c->layout, desc, &flat), LAO_OK);
+    for (uint32_t k = 0; k < r->node_count; k++) {
+        extra += r->ids[k] >= t->node_count;
+        expect_place(c, &flat, k, width, height, desc && desc->radial);
+        uint32_t up = r->parents[k];
+        if (up == SDV_NONE) {
+            assert_int_equal(flat.parents[r->ids[k]], SDV_NONE);
+            continue;
+        }
+        /* from the node up: a straight line, in steps as long as the vessel's, to the parent */
+        const lao_v4 *low = flat.nodes + r->ids[k], *top = flat.nodes + r->ids[up];
+        double whole = 0, way = 0;
+        for (uint32_t n = r->nodes[k]; r->ids[k] < t->node_count && n != r->nodes[up];
+             n = t->parents[n]) {
+            const lao_v4 *a = t->nodes + n, *b = t->nodes + t->parents[n];
+            whole += sqrt(pow((double)(a->x - b->x), 2) + pow((double)(a->y - b->y), 2) +
+                          pow((double)(a->z - b->z), 2));
+        }
+        uint32_t n = r->ids[k];
+        for (; n != r->ids[up]; n = flat.parents[n]) {
+            double part = whole > 0 ? way / whole : 0;
+            assert_true(n == r->ids[k] || n < t->node_count);
+            assert_near(flat.nodes[n].x, (double)low->x + part * (double)(top->x - low->x), 2e-3);
+            assert_near(flat.nodes[n].y, (double)low->y + part * (double)(top->y - low->y), 2e-3);
+            if (n < t->node_count) {
+                const lao_v4 *a = t->nodes + n, *b = t->nodes + t->parents[n];
+                way += sqrt(pow((double)(a->x - b->x), 2) + pow((double)(a->y - b->y), 2) +
+                            pow((double)(a->z - b->z), 2));
+            }
+        }
+        assert_near(way, whole, 1e-3 * whole + 1e-6);
+    }
+    assert_int_equal(flat.node_count, t->node_count + extra);
+    assert_int_equal(flat.segment_count, flat.node_count - r->root_count);
+    assert_int_equal(flat.root_count, r->root_count);
+    for (uint32_t i = 0; i < t->node_count; i++) { /* wider vessels, thicker edges */
+        const uint32_t other = (i * 7 + 3) % t->node_count;
+        assert_true(flat.nodes[i].w > 0);
+        assert_true(t->nodes[i].w <= t->nodes[other].w || flat.nodes[i].w >= flat.nodes[other].w);
+        assert_true(flat.nodes[i].w <= 4.001f * flat.nodes[other].w);
+    }
+    sdv_tree_free(&flat);
+}
+static void drawings(void **state) {
+    (void)state;
+    enum { N = 300 };
+    static float p[3 * N], radii[N];
+    static sdv_segment s[N];
+    const sdv_drawing_desc wide = {320, 90, 0, 2}, round = {0, 0, 1, 0};
+    for (uint32_t seed = 0; seed < 6; seed++) {
+        vessel_random_tree(seed, N, 80, 3, p, radii, s);
+        for (uint32_t i = 1; i < N && seed % 2; i++) /* nodes between, and of many children */
+            s[i - 1].parent = i % 5 ? i - 1 : i / 5;
+        case_ c = lay(N, p, radii, seed == 4 ? N / 2 : N - 1, s, NULL); /* 4: several roots */
+        check_drawing(&c, NULL);
+        check_drawing(&c, &wide);
+        check_drawing(&c, &round);
+        done(&c);
+    }
+    const float one[] = {1, 2, 3}, ball[] = {0};
+    case_ c = lay(1, one, ball, 0, NULL, NULL);
+    check_drawing(&c, NULL);
+    vessel_host host;
+    sdv_host h = vessel_host_make(&host);
+    sdv_tree flat;
+    assert_int_equal(sdv_layout_tree(&h, NULL, &c.reduced, &c.layout, NULL, &flat),
+                     LAO_ERROR_INVALID_ARGUMENT);
+    assert_int_equal(host.failures, 1);
+    lao_result result = LAO_ERROR_OUT_OF_MEMORY;
+    for (uint32_t n = 1; result != LAO_OK; n++) {
+        uint32_t failures = host.failures;
+        host.fail_at = host.takes + n;
+        result = sdv_layout_tree(&h, &c.tree, &c.reduced, &c.layout, NULL, &flat);
+        assert_int_equal(host.failures, failures + (result != LAO_OK));
+        assert_true(result == LAO_OK || (result == LAO_ERROR_OUT_OF_MEMORY && host.bytes == 0));
+    }
+    sdv_tree_free(&flat);
+    assert_int_equal(host.bytes, 0);
+    assert_int_equal(host.warnings, 0);
+    done(&c);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(reduced_trees),      cmocka_unit_test(paper_example),
         cmocka_unit_test(balanced_trees),     cmocka_unit_test(weights_by_scalar),
         cmocka_unit_test(random_trees),       cmocka_unit_test(several_trees_share_the_width),
         cmocka_unit_test(layouts_are_fast),   cmocka_unit_test(texts),
-        cmocka_unit_test(radial_and_colours),
+        cmocka_unit_test(radial_and_colours), cmocka_unit_test(drawings),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

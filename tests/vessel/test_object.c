@@ -78,6 +78,7 @@ static int ball_lists(const sdv_grid *g, lao_v4 ball, uint32_t cone) {
 static uint64_t check_blocks(const sdv_grid *g, uint32_t edge) {
     uint32_t cell[3], missing = 0;
     uint64_t listed = 0;
+    assert_true(edge > 0 && g->size[0] > 0 && g->size[1] > 0);
     for (uint32_t i = 0; i < g->cell_count; i++) {
         const lao_v4 *c = &g->cells[i];
         cell[0] = i % g->size[0];
@@ -118,6 +119,7 @@ static void room_for_all_lists(void **state) {
         same_grid(&o.grid, &g);
         for (int k = 0; k < 3; k++)
             most = g.size[k] > most ? g.size[k] : most;
+        assert_true(most > 0);
         uint32_t edge = (most + SDV_BLOCKS - 1) / SDV_BLOCKS;
         for (int k = 0; k < 3; k++) {
             blocks *= (g.size[k] + edge - 1) / edge;

@@ -581,6 +581,54 @@ static void patterns(void **state) {
     assert_int_equal(counted.bytes, 0);
 }
 
+/* The void keeps all of its ink beside a vessel, half of it half way, none from the reach on. */
+static void void_reach(void **state) {
+    float last = 1;
+    (void)state;
+    assert_true(sdv_void_share(0, 10, 0) == 1 && sdv_void_share(-3, 10, 0) == 1);
+    assert_true(sdv_void_share(10, 10, 0) == 0 && sdv_void_share(SDV_FAR, 10, 0) == 0);
+    assert_near(sdv_void_share(5, 10, 0), 0.5, 1e-6);
+    for (int i = 1; i <= 100; i++) {
+        float share = sdv_void_share((float)i, 100, 0);
+        assert_true(share < last && last - share < 0.0151f);
+        last = share;
+    }
+    assert_true(sdv_void_share(0, 0, 0) == 1 && sdv_void_share(SDV_FAR, 0, 0) == 1); /* no end */
+    assert_near(sdv_near_miss_reach(1, 2, 3, 4, 5, 200), 10, 1e-5);
+    /* strokes of less than 7 pixels pale, those of less than 3 are not drawn */
+    assert_true(sdv_void_share(0, 10, 0.15f) == 1 && sdv_void_share(0, 0, 0.3f) == 0);
+    assert_near(sdv_void_share(0, 10, 0.225f), 0.5, 1e-6);
+    assert_true(sdv_near_miss_reach(1, 20, 3, 4, 5, 200) == 20);
+}
+
+/* A depth buffer's value back to mm: perspective and orthographic, also with reversed depth. */
+static void drawn_depths(void **state) {
+    (void)state;
+    for (int kind = 0; kind < 4; kind++) {
+        const double n = 2, f = 300;
+        const bool reverse = kind % 2 == 1;
+        lao_m4 p;
+        memset(&p, 0, sizeof p);
+        if (kind < 2) { /* perspective */
+            p.z.z = (float)(reverse ? n / (f - n) : -f / (f - n));
+            p.w.z = (float)(reverse ? n * f / (f - n) : -n * f / (f - n));
+            p.z.w = -1;
+        } else {
+            p.z.z = (float)(reverse ? 1 / (f - n) : -1 / (f - n));
+            p.w.z = (float)(reverse ? f / (f - n) : -n / (f - n));
+            p.w.w = 1;
+        }
+        for (int i = 1; i < 10; i++) {
+            double z = n + (f - n) * i / 10, across = kind < 2 ? z : 1;
+            double value = (-(double)p.z.z * z + (double)p.w.z) / across;
+            assert_true(value > 0 && value < 1);
+            assert_near(sdv_drawn_depth(p, (float)value), z, 2e-4 * f * f / n);
+        }
+        assert_true(sdv_drawn_depth(p, 0) == SDV_FAR && sdv_drawn_depth(p, 1) == SDV_FAR);
+        assert_true(sdv_drawn_depth(p, NAN) == SDV_FAR);
+    }
+}
+
 /* Periods per pixel: head on they are the pixel's part of the period; tilted, more. */
 static void footprints(void **state) {
     lao_v3 x = {1, 0, 0}, y = {0, 1, 0}, down = {0, 0, -1}, n = {0, 0, 1};
@@ -649,7 +697,8 @@ int main(void) {
         cmocka_unit_test(contours),     cmocka_unit_test(ball),    cmocka_unit_test(signs),
         cmocka_unit_test(planes),       cmocka_unit_test(sweeps),  cmocka_unit_test(coherence),
         cmocka_unit_test(disocclusion), cmocka_unit_test(ink),     cmocka_unit_test(footprints),
-        cmocka_unit_test(patterns),     cmocka_unit_test(meshes),
+        cmocka_unit_test(patterns),     cmocka_unit_test(meshes),  cmocka_unit_test(void_reach),
+        cmocka_unit_test(drawn_depths),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -85,6 +85,21 @@ static void screen_of(const scene *s, const subject *tree, screen *c) {
     c->colors = tree ? tree->colors : NULL;
 }
 
+/* Beyond void_reach nothing is inked, and (of a first frame) some of the void is. */
+static void far_is_white(const screen *c, const lao_v4 *normal) {
+    float reach = 0.01f * c->values[SDV_SETTING_ID_void_reach] * c->frame.depth.z;
+    uint32_t near_ink = 0;
+    if (c->values[SDV_SETTING_ID_void_style] < 1.5f || !c->cones || c->frame.history.x > 0.5f)
+        return;
+    for (uint32_t i = 0; i < c->width * c->height; i++) {
+        if (c->surface[i].w > 0)
+            continue;
+        assert_true(normal[i].w < reach || c->ink[i].x == 1);
+        near_ink += c->ink[i].x < 1;
+    }
+    assert_true(near_ink > 0);
+}
+
 /* A frame of a device against C, whose `c` holds the frame before. */
 static void check_frame(const scene *s, const render_result *result, screen *c) {
     uint32_t n = c->width * c->height;
@@ -112,6 +127,7 @@ static void check_frame(const scene *s, const render_result *result, screen *c) 
                    texels_of(result, "vessel_normal", 0),
                    c->directions ? NULL : texels_of(result, "vessel_ray", 0));
         same(result, "vessel_ink", 0, c->ink, n);
+        far_is_white(c, texels_of(result, "vessel_normal", 0));
     }
     memcpy(c->surface_before, c->surface, n * sizeof(lao_v4));
     memcpy(c->uv_before, c->uv, n * sizeof(lao_v4));
@@ -360,6 +376,73 @@ static void surfaces(void **state) {
     sdv_object_free(&b.object);
 }
 
+/* A host that has nothing but its depth buffer: places and normals are what the mesh's were, and
+   the rest follows from them as ever. */
+static void depth_alone(void **state) {
+    enum { N = WIDTH * HEIGHT };
+    static lao_v4 position[N], normal[N];
+    bump b;
+    scene s;
+    sdv_object drawn;
+    (void)state;
+    bump_make(&b);
+    assert_int_equal(sdv_object_drawn(NULL, b.object.desc.bounds[0], &drawn), LAO_OK);
+    for (int reverse = 0; reverse < 2; reverse++) {
+        render_result results[2];
+        scene_make(&s, NULL);
+        s.vessel.style = SDV_STYLE_HATCH;
+        s.vessel.void_style = SDV_VOID_STIPPLE;
+        if (reverse)
+            render_reverse(&s.shot.camera);
+        for (int i = 0; i < 2; i++) {
+            render_result mesh;
+            render_image depth;
+            uint32_t covered = 0, alike = 0;
+            screen c;
+            render_need(&devices[i]);
+            s.shot.objects[0] = &b.object.desc;
+            s.shot.import_count = 0;
+            render_draw(&devices[i], &s.shot, &mesh);
+            depth = *render_find(&mesh, "vessel_z", 0);
+            assert_int_equal(depth.format, LAO_FORMAT_D32F);
+            depth.name = "vessel_drawn_depth";
+            s.shot.objects[0] = &drawn.desc;
+            s.shot.imports = &depth;
+            s.shot.import_count = 1;
+            render_draw(&devices[i], &s.shot, &results[i]);
+            screen_of(&s, NULL, &c);
+            c.frame = results[i].frame;
+            c.directions = position; /* not a tree */
+            screen_drawn(&c, (const float *)(const void *)depth.data, position, normal);
+            same(&results[i], "vessel_position", 0, position, N);
+            same(&results[i], "vessel_normal", 0, normal, N);
+            check_frame(&s, &results[i], &c);
+            for (uint32_t k = 0; k < N; k++) {
+                lao_v4 p = texels_of(&mesh, "vessel_position", 0)[k];
+                lao_v4 n = texels_of(&mesh, "vessel_normal", 0)[k];
+                assert_true((p.w < 0) == (position[k].w < 0));
+                if (p.w < 0)
+                    continue;
+                lao_v3 apart =
+                    lao_v3_make(p.x - position[k].x, p.y - position[k].y, p.z - position[k].z);
+                assert_true(lao_v3_dot(apart, apart) < 1e-6f);
+                covered++;
+                alike += n.x * normal[k].x + n.y * normal[k].y + n.z * normal[k].z >
+                         0.7f; /* its own are a ball's */
+            }
+            assert_true(covered > N / 8 && alike > covered * 3 / 4);
+            screen_free(&c);
+            render_free(&mesh);
+        }
+        same_image("shaded", &results[0], &results[1]);
+        same_image("zbuffer", &results[0], &results[1]);
+        render_free(&results[0]);
+        render_free(&results[1]);
+    }
+    sdv_object_free(&drawn);
+    sdv_object_free(&b.object);
+}
+
 /* Two trees in a view: the images are the last one's, and it recalls nothing of the other's. */
 static void two_trees(void **state) {
     subject a, b;
@@ -404,7 +487,8 @@ static int close_all(void **state) {
     return 0;
 }
 
-/* Compiling a view's shaders is what takes time; without an argument one scene shows the most. */
+/* Compiling a view's shaders is what takes time; without an argument one scene shows the most. The
+   second names one test. */
 int main(int count, char **arguments) {
     const struct CMUnitTest first[] = {cmocka_unit_test(frames)};
     const struct CMUnitTest others[] = {
@@ -413,8 +497,10 @@ int main(int count, char **arguments) {
         cmocka_unit_test(frames_that_converge),
         cmocka_unit_test(two_trees),
         cmocka_unit_test(surfaces),
+        cmocka_unit_test(depth_alone),
     };
-    (void)arguments;
+    if (count > 2)
+        cmocka_set_test_filter(arguments[2]);
     return count > 1 ? cmocka_run_group_tests(others, open_all, close_all)
                      : cmocka_run_group_tests(first, open_all, close_all);
 }

@@ -1,6 +1,7 @@
 #include "desktop.h"
 
 #include <X11/XKBlib.h>
+#include <X11/Xatom.h>
 #include <X11/Xlib.h>
 #include <X11/Xutil.h>
 #include <X11/extensions/XTest.h>
@@ -86,6 +87,14 @@ desktop *desktop_start(void) {
     return d;
 }
 
+void desktop_resolution(desktop *d, int dots) {
+    char text[32];
+    int length = snprintf(text, sizeof text, "Xft.dpi:\t%d\n", dots);
+    XChangeProperty(d->display, DefaultRootWindow(d->display), XA_RESOURCE_MANAGER, XA_STRING, 8,
+                    PropModeReplace, (const unsigned char *)text, length);
+    XSync(d->display, False);
+}
+
 void desktop_stop(desktop *d) {
     if (!d)
         return;
@@ -168,6 +177,17 @@ bool viewer_said(desktop *d, const char *begin) {
             return false;
     }
     return false;
+}
+
+double viewer_memory(desktop *d) {
+    char path[64];
+    long pages = 0;
+    snprintf(path, sizeof path, "/proc/%ld/statm", (long)d->viewer);
+    FILE *file = fopen(path, "r");
+    assert_non_null(file);
+    assert_int_equal(fscanf(file, "%*d %ld", &pages), 1);
+    fclose(file);
+    return (double)pages * (double)sysconf(_SC_PAGESIZE) / 1048576;
 }
 
 /* The window without a manager is a child of the root. */

@@ -12,6 +12,8 @@ typedef struct desktop desktop;
 /* Starts the screen, with 1600 x 1000 px. NULL: there is no Xvfb. */
 desktop *desktop_start(void);
 void desktop_stop(desktop *d);
+/* Dots per inch of the monitor, for viewers that are started from now on; 96 at first. */
+void desktop_resolution(desktop *d, int dots);
 
 /* Starts a viewer with --trace and these arguments, and waits until it is ready. */
 void viewer_start(desktop *d, const char *program, const char *const *arguments);
@@ -27,6 +29,9 @@ const char *viewer_hears(desktop *d, const char *begin);
 void viewer_rests(desktop *d, double seconds);
 /* Has a line beginning so been said since the start? */
 bool viewer_said(desktop *d, const char *begin);
+
+/* What the viewer has in memory now, MB. */
+double viewer_memory(desktop *d);
 
 /* Clicks into the middle of a widget, once it is there. */
 void user_clicks(desktop *d, const char *label);
