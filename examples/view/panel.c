@@ -242,7 +242,7 @@ static void picture_tab(view *v) {
     ui_width(0.36f * width);
     ui_slider_int("##wide", &v->shot_size[0], 16, 8192, "%d");
     ui_same_line();
-    ui_text("x");
+    ui_label("x");
     ui_same_line();
     ui_width(0.36f * width);
     ui_slider_int("##high", &v->shot_size[1], 16, 8192, "%d");
@@ -251,6 +251,7 @@ static void picture_tab(view *v) {
         v->shot_size[0] = v->picture.width;
         v->shot_size[1] = v->picture.height;
     }
+    ui_same_line();
     if (ui_button("Save picture"))
         stage_save(v, v->shot_path, (uint32_t)v->shot_size[0], (uint32_t)v->shot_size[1]);
     ui_help("the same bits as the command line below writes");
@@ -415,6 +416,7 @@ void panel_draw(view *v) {
     if (memcmp(&before, &v->picture, sizeof before) != 0)
         v->dirty = true;
     mark_picked(v);
+    input_hover(v);
     tree_marks(v);
     hands_marks(v);
     if (v->compare)

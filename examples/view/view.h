@@ -33,6 +33,7 @@ typedef struct pointer {
     double x, y, pressed_at[2]; /* px */
     int button;                 /* that was pressed on the picture; -1: none */
     bool moved, shift;          /* since it was pressed */
+    bool fresh;                 /* what it is on has not been looked for */
 } pointer;
 
 /* What is placed where something was picked. */
@@ -153,6 +154,8 @@ void stage_up(const view *v, double axis[3]);
 /* ---- input.c ---- */
 
 void input_attach(view *v);
+/* Finds what the pointer is on, in a frame of the user interface. */
+void input_hover(view *v);
 /* Draws of the keys table, for the panel. */
 uint32_t input_keys(uint32_t i, const char **key, const char **help);
 
@@ -195,6 +198,7 @@ void player_toggle(view *v);
 void player_stop(view *v);
 void player_step(view *v, int steps);
 void player_go(view *v, double time);
+void player_pace(view *v, double factor); /* faster above 1 */
 void player_panel(view *v, window_rect place);
 
 /* ---- panel.c ---- */
