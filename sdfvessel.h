@@ -2212,8 +2212,8 @@ LAO_FN float sdv_style_tone(float facing, float ambient, float diffuse, float li
     return lao_clamp01(r);
 }
 /* What the void keeps of its ink where the ray passes a vessel at d_min mm: all beside it, nothing
-   from `reach` mm on (0: no end), and nothing where it is so steep that strokes would be grey. wide:
-   periods per pixel. */
+   from `reach` mm on (0: no end), and nothing where it is so steep that strokes would be grey.
+   wide: periods per pixel. */
 LAO_FN float sdv_void_share(float d_min, float reach, float wide) {
     LAO_EXACT float part = lao_clamp01(1.0f - lao_max(d_min, 0.0f) / lao_max(reach, 1.0e-6f));
     LAO_EXACT float all = part * part * (3.0f - 2.0f * part);
