@@ -1772,10 +1772,15 @@ LAO_FN lao_v3 sdv_turned(lao_m4 m, lao_v3 v) {
     LAO_EXACT float z = m.x.z * v.x + m.y.z * v.y + m.z.z * v.z;
     return lao_v3_make(x, y, z);
 }
+/* A direction that only depends on the camera, unit: no branch, see sdv_apart. */
+LAO_FN lao_v3 sdv_camera_unit(lao_v3 v) {
+    LAO_EXACT float inverse = 1.0f / lao_sqrt(lao_max(lao_v3_dot(v, v), 1.0e-24f));
+    return lao_v3_scale(v, inverse);
+}
 /* Unit vector to the light of field shadows: x to the right and y up per length towards the viewer.
    world: of lao_frame_uniforms. */
 LAO_FN lao_v3 sdv_shadow_light(lao_m4 world, float x, float y) {
-    return lao_v3_unit(sdv_turned(world, lao_v3_make(x, y, 1.0f)), lao_v3_make(0.0f, 0.0f, 1.0f));
+    return sdv_camera_unit(sdv_turned(world, lao_v3_make(x, y, 1.0f)));
 }
 /* mm across a pixel at that depth. */
 LAO_FN float sdv_pixel_size(lao_v4 ray, float depth, float orthographic) {
@@ -2212,13 +2217,14 @@ LAO_FN float sdv_style_tone(float facing, float ambient, float diffuse, float li
     return lao_clamp01(r);
 }
 /* What the void keeps of its ink where the ray passes a vessel at d_min mm: all beside it, nothing
-   from `reach` mm on (0: no end), and nothing where it is so steep that strokes would be grey.
-   wide: periods per pixel. */
+   from `reach` mm on (0: no end, without a branch: see sdv_apart), and nothing where it is so steep
+   that strokes would be grey. wide: periods per pixel. */
 LAO_FN float sdv_void_share(float d_min, float reach, float wide) {
-    LAO_EXACT float part = lao_clamp01(1.0f - lao_max(d_min, 0.0f) / lao_max(reach, 1.0e-6f));
-    LAO_EXACT float all = part * part * (3.0f - 2.0f * part);
+    LAO_EXACT float endless = lao_clamp01(1.0f - 1.0e6f * reach);
+    LAO_EXACT float off = lao_max(d_min, 0.0f) / lao_max(reach, 1.0e-6f);
+    LAO_EXACT float part = lao_clamp01(lao_max(1.0f - off, endless));
     LAO_EXACT float seen = lao_clamp01(2.0f - 2.0f * wide / SDV_HALO_FOOTPRINT);
-    LAO_EXACT float r = seen * (reach > 0.0f ? all : 1.0f);
+    LAO_EXACT float r = seen * part * part * (3.0f - 2.0f * part);
     return r;
 }
 /* Red near, blue far (METHODS 6.1, RSH06). */

@@ -133,8 +133,7 @@ float sdv_depth_shadow_at(vec4 normal, vec4 ray) {
 }
 /* Periods per pixel along z at p, a place of a surface of normal n. */
 float sdv_footprint_at(lao_v3 z, lao_v3 n, lao_v3 p, lao_v3 direction, float period) {
-    lao_v3 zero = lao_v3_make(0.0, 0.0, 0.0);
     float mm = sdv_pixel_size(lao_frame.ray, sdv_depth_of(lao_frame.view, p), lao_frame.depth.w);
-    return sdv_style_footprint(z, n, lao_v3_unit(lao_frame.world.x.xyz, zero), lao_v3_unit(lao_frame.world.y.xyz, zero),
+    return sdv_style_footprint(z, n, sdv_camera_unit(lao_frame.world.x.xyz), sdv_camera_unit(lao_frame.world.y.xyz),
                                direction, mm, period);
 }

@@ -46,7 +46,7 @@ vec4 void_color(ivec2 pixel, lao_v3 direction) {
         LAO_EXACT float depth = (sdv_depth_of(lao_frame.view, p) - lao_frame.depth.x) * lao_frame.depth.y;
         LAO_EXACT float light = 0.7 + 0.3 * lao_max(facing, 0.0);
         if (lao_setting_isolines > 0.5) {
-            lao_v3 back = lao_v3_unit(lao_frame.world.z.xyz, lao_v3_make(0.0, 0.0, 1.0));
+            lao_v3 back = sdv_camera_unit(lao_frame.world.z.xyz);
             LAO_EXACT float gap = 1.0 / (lao_setting_isolines * lao_frame.depth.y);
             LAO_EXACT float wide = sdv_footprint_at(back, n, p, direction, gap);
             LAO_EXACT float place = depth * lao_setting_isolines;

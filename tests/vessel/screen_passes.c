@@ -493,9 +493,8 @@ void screen_parameterize(screen *s) {
 /* ---------------------------------------------------------------------------------------- ink */
 
 static float footprint(const screen *s, lao_v3 z, lao_v3 n, lao_v3 p, lao_v3 direction) {
-    lao_v3 none = lao_v3_make(0, 0, 0);
-    return sdv_style_footprint(z, n, lao_v3_unit(xyz(s->frame.world.x), none),
-                               lao_v3_unit(xyz(s->frame.world.y), none), direction, pixel_mm(s, p),
+    return sdv_style_footprint(z, n, sdv_camera_unit(xyz(s->frame.world.x)),
+                               sdv_camera_unit(xyz(s->frame.world.y)), direction, pixel_mm(s, p),
                                s->period);
 }
 

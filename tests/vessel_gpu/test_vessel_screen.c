@@ -97,7 +97,7 @@ static void far_is_white(const screen *c, const lao_v4 *normal) {
         assert_true(normal[i].w < reach || c->ink[i].x == 1);
         near_ink += c->ink[i].x < 1;
     }
-    assert_true(near_ink > 0);
+    assert_true(near_ink > 0 || c->period < 10); /* else strokes too fine to be drawn */
 }
 
 /* A frame of a device against C, whose `c` holds the frame before. */
@@ -201,6 +201,7 @@ static void still_frames(void **state) {
             s.vessel.set |= SDV_SET(ssp_sweeps) | SDV_SET(guide_threshold);
             s.vessel.style = SDV_STYLE_CROSSHATCH;
             s.vessel.void_style = SDV_VOID_STIPPLE;
+            s.vessel.ssp_period = 16;
         }
         if (kind == 4) {
             s.vessel.parameterization = 1;
