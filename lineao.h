@@ -1365,12 +1365,14 @@ LAO_FN float lao_acos(float x) {
     LAO_EXACT float s = (1.0f - c) * (1.0f + c);
     return lao_atan2(lao_sqrt(s), c);
 }
-/* x^n, 0 <= x <= 1, 0 <= n < 1024, by repeated squaring; results below 2^-100 are 0, because
-   denormal numbers on the way to them cost a CPU more than all the rest */
-LAO_FN float lao_power(float x, lao_int n) {
-    LAO_EXACT float least = lao_exp2(-100.0f / LAO_F(n > 0 ? n : 1));
+/* The least x whose power n is at least 2^-100. */
+LAO_FN float lao_power_least(lao_int n) {
+    return lao_exp2(-100.0f / LAO_F(n > 0 ? n : 1));
+}
+/* x^n, 0 <= n < 1024, by repeated squaring; x: 0, or lao_power_least to 1 */
+LAO_FN float lao_squarings(float x, lao_int n) {
     LAO_EXACT float r = 1.0f;
-    LAO_EXACT float b = x < least ? 0.0f : x;
+    LAO_EXACT float b = x;
     lao_int m = n;
     for (lao_int i = 0; i < 10; i = i + 1) {
         if ((m & 1) != 0) {
@@ -1380,6 +1382,11 @@ LAO_FN float lao_power(float x, lao_int n) {
         m = m >> 1;
     }
     return r;
+}
+/* x^n, 0 <= x <= 1, 0 <= n < 1024; results below 2^-100 are 0, because denormal numbers on the way
+   to them cost a CPU more than all the rest */
+LAO_FN float lao_power(float x, lao_int n) {
+    return lao_squarings(x < lao_power_least(n) ? 0.0f : x, n);
 }
 
 /* ---- noise: counter-based, so that a pixel's value depends on nothing but its coordinates */
@@ -1406,10 +1413,12 @@ LAO_FN lao_v3 lao_pixel_noise(lao_uint x, lao_uint y) {
     lao_uint h = lao_hash(x + lao_hash(y));
     return lao_sphere_point(lao_unit_float(h), lao_unit_float(lao_hash(h ^ 2654435769u)));
 }
-/* Sample direction i of `count` on level `level`: a spherical Fibonacci set, turned per level. */
+/* Sample direction i of `count` on level `level`: a spherical Fibonacci set, turned per level, from
+   both ends in turn, so that neighbours share the products of their z. */
 LAO_FN lao_v3 lao_sample_direction(lao_uint level, lao_uint i, lao_uint count) {
-    LAO_EXACT float u = (LAO_F(i) + 0.5f) / LAO_F(count);
-    LAO_EXACT float v = lao_unit_float(i * 2654435769u + level * 1640531527u);
+    lao_uint j = (i & 1u) == 0u ? i >> 1u : count - 1u - (i >> 1u);
+    LAO_EXACT float u = (LAO_F(j) + 0.5f) / LAO_F(count);
+    LAO_EXACT float v = lao_unit_float(j * 2654435769u + level * 1640531527u);
     return lao_sphere_point(u, v);
 }
 /* Samples of a level: max(1, round(samples / (level + 1))) */
@@ -1935,11 +1944,14 @@ LAO_FN float lao_depth_reach(float density, lao_uint level, lao_uint levels) {
 }
 /* Eq. 5: 1 below delta 0, 0 beyond reach; `beyond` delta 0. slope: lao_depth_weight_slope. It is
    1 - h(t) with t stretched by the cube root of 2, which takes h's factors away. */
-LAO_FN float lao_depth_weight(float beyond, float slope) {
+LAO_FN float lao_depth_weight_beyond(float beyond, float slope) { /* of beyond >= 0 */
     LAO_EXACT float steep = slope * 1.25992095f;
-    LAO_EXACT float t = lao_min(lao_max(beyond * steep, 0.0f), 1.25992095f);
+    LAO_EXACT float t = lao_min(beyond * steep, 1.25992095f);
     LAO_EXACT float r = 1.0f + t * t * (t - 1.88988161f);
     return r;
+}
+LAO_FN float lao_depth_weight(float beyond, float slope) {
+    return lao_depth_weight_beyond(lao_max(beyond, 0.0f), slope);
 }
 /* 1 / (reach - delta 0); steep enough for a step where reach does not exceed delta 0. */
 LAO_FN float lao_depth_weight_slope(float reach, float threshold) {
@@ -1947,12 +1959,22 @@ LAO_FN float lao_depth_weight_slope(float reach, float threshold) {
     LAO_EXACT float slope = 1.0f / width;
     return slope;
 }
-/* Eq. 8 and 9 with the receiver's cosine: n_omega = n.omega >= 0, r_omega = r.omega (below 0 counts
- * as 0), diffuse = I k_d n.l */
-LAO_FN float lao_light_weight(float diffuse, float n_omega, float specular, float r_omega,
-                              lao_int exponent) {
-    LAO_EXACT float l = diffuse * n_omega + specular * lao_power(r_omega, exponent);
-    LAO_EXACT float g = 1.0f - lao_min(l, 1.0f);
+/* What the normal and the reflected light of a pixel are scaled by, so that their cosines to omega
+   carry the light's parts: I k_d n.l (not 0, whose products would have no sign), and the root of
+   I k_s that the exponent takes back. */
+LAO_FN float lao_light_diffuse(float intensity, float diffuse, float nl) {
+    LAO_EXACT float scale = lao_max(intensity * diffuse * nl, 1.0e-20f);
+    return scale;
+}
+LAO_FN float lao_light_specular(float intensity, float specular, lao_int exponent) {
+    LAO_EXACT float scale = intensity * specular;
+    return scale > 0.0f ? lao_exp2(lao_log2(scale) / LAO_F(exponent)) : 0.0f;
+}
+/* Eq. 8 and 9 with the receiver's cosine: I k_d (n.l)(n.omega), and the root of the specular part
+   (below 0 counts as 0) */
+LAO_FN float lao_light_weight(float diffuse, float root, lao_int exponent) {
+    float shine = lao_squarings(lao_max(root, lao_power_least(exponent)), exponent);
+    LAO_EXACT float g = 1.0f - lao_min(diffuse + shine, 1.0f);
     return g;
 }
 /* The light form of the author's program: 1.5 - max(omega.n, 0)(spec + diff), the reflection at the
@@ -2044,8 +2066,8 @@ LAO_FN lao_tap lao_tap_make(lao_sampler s, lao_v3 direction, lao_v2 inverse) {
     LAO_EXACT float y = lao_floor(s.centre.y + lao_turned(lao_v3_dot(direction, s.y), side));
     LAO_EXACT float u = (x + 0.5f) * inverse.x;
     LAO_EXACT float v = (y + 0.5f) * inverse.y;
-    /* both in [0, 1): no bit is set in either floor */
-    bool inside = (lao_float_bits(lao_floor(u)) | lao_float_bits(lao_floor(v))) == 0u;
+    /* both in [0, 1): the bits of less than 1, and no sign */
+    bool inside = lao_float_bits(u) < 1065353216u && lao_float_bits(v) < 1065353216u;
     tap.counts = inside && (x != s.own.x || y != s.own.y);
     tap.side = side;
     tap.n_omega = lao_abs(c);

@@ -471,7 +471,7 @@ VSF_API double vsf_segment_distance2(const float p[3], const float a[3], const f
       "keep position, normal, measure and look-up of the nearest front face as images")
 
 /* What a surface looks like; as lao_settings: zero is the default unless its bit is set. Depth
-   shadow, focus and attenuation are those of the frame's first set, which must have a surface. */
+   shadow, focus and attenuation are those of the first surface that has them on. */
 typedef struct vsf_settings {
     uint64_t set;
 #define VSF__FIELD(name, type, minimum, maximum, standard, structural, unit, choices, help)        \

@@ -28,9 +28,9 @@ LAO_OUT(0, vec4, out_ao)
 #ifdef LAO_FRAGMENT
 /* What a pixel brings to every level. */
 struct lao_centre {
-    lao_v3 n, r, l, noise; /* normal, reflected light, towards the light, mirror */
+    lao_v3 n, r, l, noise; /* normal and reflected light (paper: scaled, see lao_light_weight), towards the light, mirror */
     lao_v2 pixel;
-    float zoom, diffuse; /* px per mm; I k_d n.l */
+    float zoom; /* px per mm */
 };
 /* What a level brings to every sample. */
 struct lao_gather {
@@ -64,32 +64,53 @@ lao_gather lao_gather_make(usampler2D words, lao_centre c, uint level) {
     return g;
 }
 
+/* What a sample brings to its read: everything that does not depend on it. */
+struct lao_sample {
+    lao_v3 direction;
+    vec2 at;
+    float n_omega, light; /* weight of the light, where it depends on the pixel alone */
+    uint side;
+    bool counts;
+};
+
+lao_sample lao_sample_make(lao_centre c, lao_gather g, lao_v3 direction) {
+    lao_sample s;
+    lao_tap tap = lao_tap_make(g.rows, direction, g.inverse);
+    s.direction = direction;
+    s.at = tap.at;
+    s.n_omega = tap.n_omega;
+    s.light = 1.0;
+    if (lao_uses_light(lao_constant_show) && lao_constant_light == LAO_LIGHT_PAPER) {
+        s.light = lao_light_weight(tap.n_omega, tap.r_omega, lao_constant_light_exponent);
+    }
+    s.side = tap.side;
+    s.counts = tap.counts;
+    return s;
+}
+
 /* One sample: (its share of the occlusion, 1 when it counts). */
-vec2 lao_sample_weight(sampler2D tangents, lao_centre c, lao_gather g, lao_v3 direction, lao_tap tap, uint word) {
+vec2 lao_sample_weight(sampler2D tangents, lao_centre c, lao_gather g, lao_sample s, uint word) {
     LAO_EXACT float beyond = lao_level_nearer(g.centre, word) - g.threshold;
-    bool visible = tap.counts;
-    LAO_EXACT float weight = 1.0;
+    bool visible = s.counts;
+    LAO_EXACT float weight = s.light;
     if (lao_uses_visibility(lao_constant_show)) {
         visible = visible && beyond >= g.least;
     }
     if (lao_uses_depth(lao_constant_show)) {
-        weight = lao_depth_weight(beyond, g.slope);
-    }
-    if (lao_uses_light(lao_constant_show)) {
-        if (lao_constant_light == LAO_LIGHT_PAPER) {
-            LAO_EXACT float specular = lao_setting_light_intensity * lao_setting_light_specular;
-            weight = weight *
-                     lao_light_weight(c.diffuse, tap.n_omega, specular, tap.r_omega, lao_constant_light_exponent);
+        if (lao_uses_visibility(lao_constant_show) && lao_constant_strict_zero == 0) {
+            weight = weight * lao_depth_weight_beyond(beyond, g.slope);
         } else {
-            vec4 texel = textureLod(tangents, tap.at, 0.0);
-            lao_v3 occluder = texel.xyz;
-            if (!g.finest) {
-                occluder = lao_signed_unpack(texel);
-            }
-            lao_v3 omega = lao_v3_scale(lao_mirror(direction, c.noise), lao_turned(1.0, tap.side));
-            weight = weight *
-                     lao_light_weight_author(omega, tap.n_omega, occluder, c.l, lao_constant_light_exponent);
+            weight = weight * lao_depth_weight(beyond, g.slope);
         }
+    }
+    if (lao_uses_light(lao_constant_show) && lao_constant_light == LAO_LIGHT_AUTHOR) {
+        vec4 texel = textureLod(tangents, s.at, 0.0);
+        lao_v3 occluder = texel.xyz;
+        if (!g.finest) {
+            occluder = lao_signed_unpack(texel);
+        }
+        lao_v3 omega = lao_v3_scale(lao_mirror(s.direction, c.noise), lao_turned(1.0, s.side));
+        weight = weight * lao_light_weight_author(omega, s.n_omega, occluder, c.l, lao_constant_light_exponent);
     }
     if (lao_constant_align != LAO_ALIGN_NONE && lao_uses_alignment(lao_constant_show)) {
         float x = lao_constant_align == LAO_ALIGN_ROTATION ? lao_axial_difference(g.centre, word)
@@ -97,32 +118,45 @@ vec2 lao_sample_weight(sampler2D tangents, lao_centre c, lao_gather g, lao_v3 di
         LAO_EXACT float aligned = lao_align_weight(x, lao_setting_align_intensity, g.align_floor);
         weight = weight * (lao_level_known(word) ? aligned : 1.0);
     }
-    return vec2(visible ? weight : 0.0, tap.counts ? 1.0 : 0.0);
+    return vec2(visible ? weight : 0.0, s.counts ? 1.0 : 0.0);
 }
 
-/* Four samples, their reads first: one after the other, each would wait for its own. */
-vec2 lao_sample_four(vec2 before, usampler2D words, sampler2D tangents, lao_centre c, lao_gather g, lao_v3 r0,
-                     lao_v3 r1, lao_v3 r2, lao_v3 r3) {
+/* Four samples, their reads together: one after the other, each would wait for its own. */
+vec2 lao_sample_four(vec2 before, usampler2D words, sampler2D tangents, lao_centre c, lao_gather g, lao_v3 r0, lao_v3 r1, lao_v3 r2, lao_v3 r3) {
     LAO_EXACT vec2 sum = before;
-    lao_tap t0 = lao_tap_make(g.rows, r0, g.inverse);
-    lao_tap t1 = lao_tap_make(g.rows, r1, g.inverse);
-    lao_tap t2 = lao_tap_make(g.rows, r2, g.inverse);
-    lao_tap t3 = lao_tap_make(g.rows, r3, g.inverse);
-    uint w0 = textureLod(words, t0.at, 0.0).x;
-    uint w1 = textureLod(words, t1.at, 0.0).x;
-    uint w2 = textureLod(words, t2.at, 0.0).x;
-    uint w3 = textureLod(words, t3.at, 0.0).x;
-    sum = sum + lao_sample_weight(tangents, c, g, r0, t0, w0);
-    sum = sum + lao_sample_weight(tangents, c, g, r1, t1, w1);
-    sum = sum + lao_sample_weight(tangents, c, g, r2, t2, w2);
-    sum = sum + lao_sample_weight(tangents, c, g, r3, t3, w3);
+    lao_sample s0 = lao_sample_make(c, g, r0);
+    lao_sample s1 = lao_sample_make(c, g, r1);
+    lao_sample s2 = lao_sample_make(c, g, r2);
+    lao_sample s3 = lao_sample_make(c, g, r3);
+    uint w0 = textureLod(words, s0.at, 0.0).x;
+    uint w1 = textureLod(words, s1.at, 0.0).x;
+    uint w2 = textureLod(words, s2.at, 0.0).x;
+    uint w3 = textureLod(words, s3.at, 0.0).x;
+    sum = sum + lao_sample_weight(tangents, c, g, s0, w0);
+    sum = sum + lao_sample_weight(tangents, c, g, s1, w1);
+    sum = sum + lao_sample_weight(tangents, c, g, s2, w2);
+    sum = sum + lao_sample_weight(tangents, c, g, s3, w3);
+    return sum;
+}
+
+vec2 lao_sample_three(vec2 before, usampler2D words, sampler2D tangents, lao_centre c, lao_gather g, lao_v3 r0, lao_v3 r1, lao_v3 r2) {
+    LAO_EXACT vec2 sum = before;
+    lao_sample s0 = lao_sample_make(c, g, r0);
+    lao_sample s1 = lao_sample_make(c, g, r1);
+    lao_sample s2 = lao_sample_make(c, g, r2);
+    uint w0 = textureLod(words, s0.at, 0.0).x;
+    uint w1 = textureLod(words, s1.at, 0.0).x;
+    uint w2 = textureLod(words, s2.at, 0.0).x;
+    sum = sum + lao_sample_weight(tangents, c, g, s0, w0);
+    sum = sum + lao_sample_weight(tangents, c, g, s1, w1);
+    sum = sum + lao_sample_weight(tangents, c, g, s2, w2);
     return sum;
 }
 
 vec2 lao_sample_one(vec2 before, usampler2D words, sampler2D tangents, lao_centre c, lao_gather g, lao_v3 direction) {
-    lao_tap tap = lao_tap_make(g.rows, direction, g.inverse);
-    uint word = textureLod(words, tap.at, 0.0).x;
-    LAO_EXACT vec2 sum = before + lao_sample_weight(tangents, c, g, direction, tap, word);
+    lao_sample s = lao_sample_make(c, g, direction);
+    uint word = textureLod(words, s.at, 0.0).x;
+    LAO_EXACT vec2 sum = before + lao_sample_weight(tangents, c, g, s, word);
     return sum;
 }
 
@@ -149,9 +183,12 @@ void main() {
     c.l = lao_towards_eye(lao_pixel_slope(lao_frame.ray, c.pixel.x, c.pixel.y), lao_frame.depth.w);
     c.n = lao_line_normal(line.xyz, c.l);
     LAO_EXACT float nl = lao_max(lao_v3_dot(c.n, c.l), 0.0);
-    LAO_EXACT float diffuse = lao_setting_light_intensity * lao_setting_light_diffuse * nl;
-    c.diffuse = diffuse;
     c.r = lao_v3_along(lao_v3_scale(c.l, -1.0), c.n, 2.0 * nl);
+    if (lao_constant_light == LAO_LIGHT_PAPER) {
+        c.n = lao_v3_scale(c.n, lao_light_diffuse(lao_setting_light_intensity, lao_setting_light_diffuse, nl));
+        c.r = lao_v3_scale(c.r, lao_light_specular(lao_setting_light_intensity, lao_setting_light_specular,
+                                                   lao_constant_light_exponent));
+    }
     c.noise = lao_pixel_noise(uint(pixel.x), uint(pixel.y));
     c.zoom = line.w > 0.0 ? line.w : lao_pixel_zoom(lao_frame.scale, lao_frame.depth, lao_level_depth(own));
     LAO_EXACT float total = 0.0;

@@ -75,12 +75,13 @@ static void print_tangent(uint32_t level) {
         printf("tangent");
 }
 
-/* Four at a time, then the rest one by one. */
+/* Four at a time, then the rest: three together or one by one. */
 static void print_samples(uint32_t level, uint32_t count) {
+    static const char *const words[] = {"", "one", "", "three", "four"};
     uint32_t i, k, n;
     for (i = 0; i < count; i += n) {
-        n = count - i >= 4 ? 4 : 1;
-        printf("            sum = lao_sample_%s(sum, level%u, ", n == 4 ? "four" : "one", level);
+        n = count - i >= 4 ? 4 : count - i == 3 ? 3 : 1;
+        printf("            sum = lao_sample_%s(sum, level%u, ", words[n], level);
         print_tangent(level);
         printf(", c, g");
         for (k = 0; k < n; k++) {

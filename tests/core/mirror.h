@@ -209,10 +209,10 @@ LAO_FN lao_v4 mirror(lao_uint row, lao_uint n) {
     }
     if (row == 31u) {
         return lao_v4_make(
-            lao_light_weight(u, v, lao_abs(a), b, exponent),
+            lao_light_weight(u * v, b, exponent),
             lao_light_weight_author(e, v, (n & 7u) == 0u ? lao_v3_make(0.0f, 0.0f, 0.0f) : f, g,
                                     exponent),
-            0.0f, 0.0f);
+            lao_light_diffuse(u, v, a), lao_light_specular(u, v, exponent == 0 ? 1 : exponent));
     }
     if (row >= 32u && row <= 36u) {
         lao_v3 direction = lao_sample_direction(n & 7u, (n >> 3u) & 15u, 16u);

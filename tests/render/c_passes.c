@@ -206,7 +206,7 @@ c_level c_level_up(const c_inputs *in, uint32_t level) {
 typedef struct centre {
     lao_v3 n, r, l, noise;
     lao_v2 pixel;
-    float zoom, diffuse;
+    float zoom;
 } centre;
 
 typedef struct gather {
@@ -234,8 +234,7 @@ static float light_weight(const c_inputs *in, const centre *c, lao_tap tap, lao_
                           uint32_t level) {
     const lao_settings *s = &in->settings;
     if ((int)s->light == LAO_LIGHT_PAPER)
-        return lao_light_weight(c->diffuse, tap.n_omega, s->light_intensity * s->light_specular,
-                                tap.r_omega, (int)s->light_exponent);
+        return lao_light_weight(tap.n_omega, tap.r_omega, (int)s->light_exponent);
     lao_v4 t = texel(level ? in->level_tangent[level] : in->tangent, tap.x, tap.y);
     lao_v3 occluder = level ? lao_signed_unpack(t) : lao_v3_make(t.x, t.y, t.z);
     lao_v3 omega = lao_v3_scale(lao_mirror(direction, c->noise), lao_turned(1, tap.side));
@@ -281,8 +280,12 @@ static float occlusion_pixel(const c_inputs *in, int x, int y) {
     c.l = lao_towards_eye(slope_of(in, x, y), in->frame.depth.w);
     c.n = lao_line_normal(lao_v3_make(line.x, line.y, line.z), c.l);
     nl = lao_max(lao_v3_dot(c.n, c.l), 0);
-    c.diffuse = s->light_intensity * s->light_diffuse * nl;
     c.r = lao_v3_along(lao_v3_scale(c.l, -1), c.n, 2 * nl);
+    if ((int)s->light == LAO_LIGHT_PAPER) {
+        c.n = lao_v3_scale(c.n, lao_light_diffuse(s->light_intensity, s->light_diffuse, nl));
+        c.r = lao_v3_scale(
+            c.r, lao_light_specular(s->light_intensity, s->light_specular, (int)s->light_exponent));
+    }
     c.noise = in->noise ? in->noise(in->noise_frame, (uint32_t)x, (uint32_t)y)
                         : lao_pixel_noise((uint32_t)x, (uint32_t)y);
     c.zoom = line.w > 0 ? line.w
