@@ -2279,11 +2279,13 @@ typedef struct vsf__lattice {
 } vsf__lattice;
 
 static uint64_t vsf__cell_key(const vsf__lattice *l, const float *p) {
+    const double most = (double)VSF__MOST_CELLS;
     uint64_t key = 0;
     int k;
     for (k = 0; k < 3; k++) {
         double at = floor(((double)p[k] - l->low[k]) / l->size);
-        key = key << 21 | (uint64_t)(at > 0 ? at < VSF__MOST_CELLS ? at : VSF__MOST_CELLS : 0);
+        at = at < most ? at : most;
+        key = key << 21 | (uint64_t)(at > 0 ? at : 0);
     }
     return key;
 }
