@@ -128,23 +128,53 @@ static void edit_setting(view *v) {
     if (looks->index < 0)
         return;
     const lao_setting_row *row = row_of(v, looks);
+    if (!ui_table("sides", 2))
+        return;
     for (int side = 0; side < 2; side++) {
         ui_group(side);
         ui_widget_name(side ? "right value" : "left value");
-        if (ui_table("sides", 2)) {
-            ui_cell();
-            ui_label(side ? "right" : "left");
-            ui_cell();
-            if (panel_edit(row, &looks[side].value)) {
-                if (row->type == LAO_SETTING_INT)
-                    looks[side].value = roundf(looks[side].value);
-                v->dirty = true;
-            }
-            panel_explain(row);
-            ui_table_end();
+        ui_cell();
+        ui_label(side ? "right" : "left");
+        ui_cell();
+        if (panel_edit(row, &looks[side].value)) {
+            if (row->type == LAO_SETTING_INT)
+                looks[side].value = roundf(looks[side].value);
+            v->dirty = true;
         }
+        panel_explain(row);
         ui_widget_name(NULL);
         ui_group_end();
+    }
+    ui_table_end();
+}
+
+static bool same_pass(const lao_timing *a, const lao_timing *b) {
+    return strcmp(a->pass, b->pass) == 0 && a->level == b->level;
+}
+
+/* The pass of `in` that is the i-th of `of`: of equal ones as many come before it. NULL: none. */
+static const lao_timing *find_pass(const compare_result *in, const compare_result *of, uint32_t i) {
+    uint32_t before = 0;
+    for (uint32_t k = 0; k < i; k++)
+        before += same_pass(&of->passes[k], &of->passes[i]);
+    for (uint32_t k = 0; k < in->pass_count; k++) {
+        if (same_pass(&in->passes[k], &of->passes[i]) && before-- == 0)
+            return &in->passes[k];
+    }
+    return NULL;
+}
+
+/* A pass that one side does not have is left empty there. */
+static void pass_row(const lao_timing *of, const lao_timing *left, const lao_timing *right) {
+    const lao_timing *sides[2] = {left, right};
+    char text[64];
+    snprintf(text, sizeof text, of->level ? "%s %u" : "%s", of->pass, of->level);
+    ui_cell();
+    ui_text(text);
+    for (int k = 0; k < 2; k++) {
+        snprintf(text, sizeof text, "%.2f", sides[k] ? sides[k]->milliseconds : 0);
+        ui_cell();
+        ui_text(sides[k] ? text : "");
     }
 }
 
@@ -159,17 +189,11 @@ static void pass_times(const compare_result *const r[2]) {
         ui_cell();
         ui_text(text);
     }
-    for (uint32_t i = 0; i < r[0]->pass_count || i < r[1]->pass_count; i++) {
-        const lao_timing *t = i < r[0]->pass_count ? &r[0]->passes[i] : &r[1]->passes[i];
-        snprintf(text, sizeof text, t->level ? "%s %u" : "%s", t->pass, t->level);
-        ui_cell();
-        ui_text(text);
-        for (int k = 0; k < 2; k++) {
-            snprintf(text, sizeof text, "%.2f",
-                     i < r[k]->pass_count ? r[k]->passes[i].milliseconds : 0);
-            ui_cell();
-            ui_text(i < r[k]->pass_count ? text : "");
-        }
+    for (uint32_t i = 0; i < r[0]->pass_count; i++)
+        pass_row(&r[0]->passes[i], &r[0]->passes[i], find_pass(r[1], r[0], i));
+    for (uint32_t i = 0; i < r[1]->pass_count; i++) {
+        if (!find_pass(r[0], r[1], i))
+            pass_row(&r[1]->passes[i], NULL, &r[1]->passes[i]);
     }
     ui_table_end();
 }
