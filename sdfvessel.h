@@ -655,7 +655,7 @@ SDV_API lao_result sdv_object_make_tree(const sdv_host *host, const sdv_tree *tr
                                         const uint8_t *colors, sdv_object *object);
 /* After the host changed tree->nodes[nodes[i]], i < count: `desc` is then what lao_object_update
    takes. The box stays while the tree is inside. Fails like sdv_grid_update, with the object as
-   before. */
+   before; or with MEMORY for the nearest vessels of shapes, which are then not to be drawn. */
 SDV_API lao_result sdv_object_move(const sdv_host *host, const sdv_tree *tree,
                                    const uint32_t *nodes, uint32_t count, sdv_object *object);
 /* Describes a mesh for lao_object_create, with copies of all it needs. Free with sdv_object_free.
@@ -4274,7 +4274,7 @@ SDV_API void sdv_grid_free(sdv_grid *grid) {
    found anew in the layers whose occupied cells change, and in those columns along z where that
    matters. Blocks of cells that are nearer to others than to all that changes are left out from the
    start. */
-enum { SDV__BLOCK = 8 };
+#define SDV__BLOCK 8u
 typedef struct sdv__change {
     sdv_grid *grid;
     uint32_t *changed;         /* cones, ascending */

@@ -118,17 +118,17 @@ static lao_v3 color_of(const uint8_t *bytes) {
 }
 
 /* What the tree is combined with, and what its surfaces are coloured with; NULL: nothing. */
-typedef struct carving {
+typedef struct solid {
     const sdv_shapes *shapes;
     const float *colors;
-} carving;
+} solid;
 
 /* The colour of the vessel there, of the shape, or of the vessel that is nearest to it. */
-static lao_v3 color_at(const subject *tree, const carving *cut, lao_v4 hit, lao_v4 r) {
+static lao_v3 color_at(const subject *tree, const solid *of, lao_v4 hit, lao_v4 r) {
     lao_v3 p = lao_v3_make(hit.x, hit.y, hit.z);
     uint32_t cone = (uint32_t)hit.w;
     if (hit.w < 0) {
-        const float *own = cut->colors + 3 * (size_t)(0.5f * r.w);
+        const float *own = of->colors + 3 * (size_t)(0.5f * r.w);
         if (own[0] >= 0)
             return lao_v3_make(own[0], own[1], own[2]);
         sdv_cones_distance(tree->grid.cones, tree->grid.cone_count, p, &cone); /* by brute force */
@@ -139,15 +139,15 @@ static lao_v3 color_at(const subject *tree, const carving *cut, lao_v4 hit, lao_
 }
 
 /* What the pixel shows; false: nothing is drawn. */
-static bool shade_of(const subject *tree, const carving *cut, const float *v,
+static bool shade_of(const subject *tree, const solid *of, const float *v,
                      const lao_frame_uniforms *frame, const sdv_ray *ray, lao_v4 hit, lao_v4 n,
                      lao_v4 r, lao_v3 *out) {
     lao_v3 normal = lao_v3_make(n.x, n.y, n.z), p = lao_v3_make(hit.x, hit.y, hit.z);
     lao_v3 miss = lao_transform(frame->view, lao_v3_along(ray->origin, ray->direction, r.y));
     float zoom = sdv_zoom(frame->scale, frame->depth, -miss.z, 1);
     float diameter = frame->depth.z, light = 1;
-    const sdv_shapes *shapes = cut ? cut->shapes : NULL;
-    bool inside = cut ? (uint32_t)r.w % 2 == 1 : r.w > 0.5f;
+    const sdv_shapes *shapes = of ? of->shapes : NULL;
+    bool inside = of ? (uint32_t)r.w % 2 == 1 : r.w > 0.5f;
     bool missed = hit.w == -1.0f, near = v[SDV_SETTING_ID_near_miss] != SDV_NEAR_MISS_NONE;
     float width = v[missed ? SDV_SETTING_ID_silhouette : SDV_SETTING_ID_contour];
     *out = lao_v3_make(0, 0, 0);
@@ -178,14 +178,14 @@ static bool shade_of(const subject *tree, const carving *cut, const float *v,
                                             0.01f * v[SDV_SETTING_ID_shadow_width] * diameter,
                                             v[SDV_SETTING_ID_shadow_softness]),
                            v[SDV_SETTING_ID_shadow_strength]);
-    *out = sdv_shade(color_at(tree, cut, hit, r), normal, lao_v3_scale(ray->direction, -1.0f),
+    *out = sdv_shade(color_at(tree, of, hit, r), normal, lao_v3_scale(ray->direction, -1.0f),
                      v[SDV_SETTING_ID_surface_ambient], v[SDV_SETTING_ID_surface_diffuse],
                      v[SDV_SETTING_ID_surface_specular],
                      (lao_int)v[SDV_SETTING_ID_surface_shininess], light);
     return true;
 }
 
-static void check_shade(const scene *s, const subject *tree, const carving *cut,
+static void check_shade(const scene *s, const subject *tree, const solid *of,
                         const render_result *result) {
     const render_image *position = render_find(result, "vessel_position", 0);
     const render_image *normal = render_find(result, "vessel_normal", 0);
@@ -200,7 +200,7 @@ static void check_shade(const scene *s, const subject *tree, const carving *cut,
         sdv_ray ray;
         lao_v3 c;
         ray_of(&result->frame, x, y, &ray);
-        bool drawn = shade_of(tree, cut, values, &result->frame, &ray, texel_of(position, x, y),
+        bool drawn = shade_of(tree, of, values, &result->frame, &ray, texel_of(position, x, y),
                               texel_of(normal, x, y), texel_of(ray_image, x, y), &c);
         const uint8_t bytes[4] = {unorm8(c.x), unorm8(c.y), unorm8(c.z), 255};
         all += drawn;
@@ -358,7 +358,7 @@ static void with_shapes(void **state) {
         const float colors[3 * SHAPES] = {-1, 0, 0, 0.9f, 0.5f, 0.1f, -1, 0, 0,
                                           0,  1, 0, 0,    0,    0,    -1, 0, 0};
         assert_int_equal(sdv_object_shapes(NULL, &c.shapes, colors, &tree.object), LAO_OK);
-        const carving seen = {&c.shapes, colors};
+        const solid seen = {&c.shapes, colors};
         s.vessel.field_shadow = count > 2 ? 1.0f : 0.0f;
         for (int i = 0; i < 2; i++) {
             uint32_t cut = 0;

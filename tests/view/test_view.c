@@ -237,7 +237,7 @@ static void click_middle(desktop *d, int right) {
 static void focuses_surfaces(fixture *f) {
     char command[8192];
     desktop *d = f->desktop;
-    click_middle(d, 0);
+    click_middle(d, -70); /* on the wide vessel */
     assert_int_equal(viewer_hears(d, "picked ")[0], '3');
     user_clicks(d, "Focus here");
     assert_non_null(strchr(viewer_hears(d, "focus "), ','));
