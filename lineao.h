@@ -303,7 +303,7 @@ typedef enum lao_depth_test {
 } lao_depth_test;
 
 #define LAO_MAX_BUFFERS 24 /* of all modules of a context */
-#define LAO_MAX_READS 16 /* texture units that every stage has at least (OpenGL 3.3, Vulkan) */
+#define LAO_MAX_READS 16   /* texture units that every stage has at least (OpenGL 3.3, Vulkan) */
 #define LAO_MAX_WRITES 6
 #define LAO_MAX_CONSTANTS 12
 #define LAO_MAX_CONDITIONS 3
@@ -3778,9 +3778,9 @@ void lao_plan_print(const lao_graph *graph, const lao_plan *plan,
 #define LAO__GROUPS 256u /* of a chunk, at most */
 enum {
     LAO__PARTED = 64, /* lines; fewer are one part */
-    LAO__PART = 4,    /* of so many lines one is in the first part */
-    LAO__DENSE = 4    /* pixels of a segment, at most, where parts pay */
+    LAO__PART = 4     /* of so many lines one is in the first part */
 };
+#define LAO__DENSE 4.0 /* pixels of a segment, at most, where parts pay */
 
 typedef struct lao__lines {
     lao_chunk *chunks;

@@ -3,6 +3,7 @@
    closed lines have no seam. */
 #include "core_host.h"
 
+#include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stdlib.h>
@@ -246,6 +247,27 @@ static void closed_lines_have_no_seam(void **state) {
     lao_destroy(context);
 }
 
+/* Every point of a ball is seen within its size of the centre, in perspective and without. */
+static void balls_are_not_larger(void **state) {
+    const lao_v4 scale = lao_v4_make(700, 900, 0, 0);
+    (void)state;
+    for (int i = 0; i < 200000; i++) {
+        const int flat = i & 1;
+        const double r = core_between(&seed, 0.001, 3), a = core_between(&seed, 0, 2 * PI);
+        const double c = core_between(&seed, -1, 1), s = sqrt(1 - c * c);
+        lao_v3 p = lao_v3_make(any(-60, 60), any(-60, 60), any(-90, -3.5));
+        lao_v2 size = lao_ball_size(p, (float)r, scale, (float)flat);
+        double x = p.x + r * s * cos(a), y = p.y + r * s * sin(a), z = p.z + r * c;
+        double dx = flat ? x - p.x : x / -z - p.x / (double)-p.z;
+        double dy = flat ? y - p.y : y / -z - p.y / (double)-p.z;
+        assert_true(fabs(700 * dx) <= size.x * 1.00001 && fabs(900 * dy) <= size.y * 1.00001);
+    }
+    assert_true(lao_ball_size(lao_v3_make(0, 0, -1), 2, scale, 0).x < 0); /* around the eye */
+    assert_true(lao_behind(0.6f, 0.5f, 0) && !lao_behind(0.5f, 0.5f, 0));
+    assert_true(lao_behind(0.4f, 0.5f, 1) && !lao_behind(0.6f, 0.5f, 1));
+    assert_false(lao_behind(0.50001f, 0.5f, 0));
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(corners_are_shared_up_to_90_degrees),
@@ -253,6 +275,7 @@ int main(void) {
         cmocka_unit_test(no_segment_is_thinner_than_its_width),
         cmocka_unit_test(degenerate_ends),
         cmocka_unit_test(closed_lines_have_no_seam),
+        cmocka_unit_test(balls_are_not_larger),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

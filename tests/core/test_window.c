@@ -329,6 +329,27 @@ static void any_times(void **state) {
     }
 }
 
+/* Many lines in a small picture are drawn in two parts: every fourth line, then the others. */
+static void parts_are_everything(void **state) {
+    fixture f;
+    (void)state;
+    begin(&f, 101, 10);
+    f.settings.trail = 0;
+    upload(&f);
+    draw(&f, 0);
+    assert_int_equal(seen.range_count, 1);           /* of the last row: the rest */
+    assert_int_equal(seen.ranges[0].first, 26 * 12); /* 26 lines between ghosts */
+    assert_int_equal(seen.ranges[0].first + seen.ranges[0].count, seen.segment_count);
+    for (uint32_t k = 0; k < 26; k++) /* x counts points */
+        assert_true(seen.points[4 * (12 * k + 1)] == 40.0f * (float)k);
+    f.settings.set = LAO_SET(cull_hidden);
+    draw(&f, 0);
+    assert_int_equal(seen.range_count, 1);
+    assert_int_equal(seen.ranges[0].first, 0);
+    assert_int_equal(seen.ranges[0].count, seen.segment_count);
+    end(&f);
+}
+
 /* A refused allocation refuses the set, and nothing leaks. */
 static void memory_runs_out(void **state) {
     fixture f;
@@ -353,7 +374,7 @@ int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(few_others_are_drawn),   cmocka_unit_test(windows_wrap),
         cmocka_unit_test(others_draw_everything), cmocka_unit_test(any_times),
-        cmocka_unit_test(memory_runs_out),
+        cmocka_unit_test(parts_are_everything),   cmocka_unit_test(memory_runs_out),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
