@@ -258,11 +258,14 @@ typedef struct lao_reference {
 
 typedef enum lao_pass_kind {
     LAO_PASS_FULLSCREEN, /* one triangle over the image; reads buffers of the set's object */
+    LAO_PASS_DRAW_MESH,  /* three vertices for each triangle of the set's object; nothing without
+                            one */
     LAO_PASS_DRAW_LINES, /* four vertices for each segment of the set's lines; reads their buffers
                           */
-    LAO_PASS_DRAW_MESH   /* three vertices for each triangle of the set's object; nothing without
-                            one */
+    LAO_PASS_DRAW_LINES_FIRST, /* of a set drawn in two parts the first, of any other everything */
+    LAO_PASS_DRAW_LINES_REST   /* the second part; nothing of any other set */
 } lao_pass_kind;
+#define LAO_PASS_DRAWS_LINES(kind) ((kind) >= LAO_PASS_DRAW_LINES)
 typedef enum lao_repeat {
     LAO_REPEAT_NONE,
     LAO_REPEAT_LEVELS_UP,   /* the levels above writes[0].level_index .. last of that image */
@@ -479,7 +482,9 @@ LAO_API const lao_pass_row *lao_passes(int *count);
       "the picture, or factors of the occlusion alone (Koehler 2017, Fig. 4)")                     \
     X(ao_affects_color, ENUM, 0, 1, 0, 1, "", "multiply|luminance_preserving",                     \
       "what shading takes from a color: all of it, or saturation only, so that values can be "     \
-      "read")
+      "read")                                                                                      \
+    X(cull_hidden, BOOL, 0, 1, 1, 1, "", "",                                                       \
+      "of many lines leave out what is hidden before it is drawn; does not change the picture")
 
 /* What a line set looks like. A field counts when it is not zero or its bit in `set` is on;
    otherwise the preset's value holds, then the default. So `lao_settings s = {0}` is the
@@ -989,6 +994,7 @@ typedef struct lao_chunk {
     void
         *buffers[LAO_MAX_BUFFERS]; /* backend buffers by index in lao_graph.buffers; NULL: absent */
     uint32_t count;                /* segments; triangles */
+    uint32_t part;                 /* segments of the first part */
     const lao_group *groups;       /* in order of time; NULL: the lines have no times */
     uint32_t group_count;
 } lao_chunk;
@@ -1003,6 +1009,7 @@ typedef struct lao_draw {
     const lao_chunk *chunks; /* of the lines */
     uint32_t chunk_count;
     lao_window window;       /* of the lines */
+    int parted;              /* they are drawn in two parts; not with a window */
     const lao_chunk *object; /* NULL: none */
 } lao_draw;
 
@@ -1032,8 +1039,8 @@ LAO_API uint32_t lao_step_draws(const lao_execution *execution, const lao_plan_s
 typedef struct lao_range {
     uint32_t first, count, next;
 } lao_range;
-/* Turns `range`, all zero at first, into the next stretch of a chunk that a LAO_PASS_DRAW_LINES
-   step draws; returns 0 when there is none left. A row that reads "#order" leaves out the groups
+/* Turns `range`, all zero at first, into the next stretch of a chunk that a step which draws lines
+   draws; returns 0 when there is none left. A row that reads "#order" leaves out the groups
    that the set's window does not reach; any other draws all segments. Thread: any. */
 LAO_API int lao_step_range(const lao_execution *execution, const lao_plan_step *step,
                            const lao_chunk *chunk, lao_range *range);
@@ -1735,6 +1742,25 @@ LAO_FN lao_v2 lao_screen_axial(lao_v3 t, lao_v2 slope, lao_v4 scale, float ortho
     return lao_v2_make(c, s);
 }
 
+/* ---- segments hidden behind others */
+/* Half the size (px, each way) of what a ball of radius r (mm) around p covers, at most: seen in
+   perspective x / w is bent by r / w for its own sake and by |x / w| r / w for that of w. scale:
+   lao_frame_uniforms.scale. Not positive where the ball reaches behind the eye. */
+LAO_FN lao_v2 lao_ball_size(lao_v3 p, float r, lao_v4 scale, float orthographic) {
+    LAO_EXACT float w = orthographic > 0.5f ? 1.0f : -p.z - r;
+    LAO_EXACT float sx = orthographic > 0.5f ? 1.0f : 1.0f + lao_abs(p.x / p.z);
+    LAO_EXACT float sy = orthographic > 0.5f ? 1.0f : 1.0f + lao_abs(p.y / p.z);
+    LAO_EXACT float x = lao_abs(scale.x) * r * sx / w;
+    LAO_EXACT float y = lao_abs(scale.y) * r * sy / w;
+    return lao_v2_make(x, y);
+}
+/* Is a fragment at least as deep as `near` behind all of `far`? By several times what
+   interpolation takes from a depth of 1, where clip depth is [-w, w] too. */
+LAO_FN bool lao_behind(float near, float far, float reversed) {
+    LAO_EXACT float behind = reversed > 0.5f ? far - near : near - far;
+    return behind > 2.0e-5f;
+}
+
 /* ---- halos (METHODS 3; Koehler 2017, 4.3; Everts 2009) */
 #define LAO_HALO_NONE 0
 #define LAO_HALO_UNIFORM 1
@@ -2196,6 +2222,8 @@ static const lao_image_row lao__images[] = {
     {"tangent",       LAO_FORMAT_RGBA16F, LAO_SIZE_FULL, 0, 0, NULL,     0,                LAO_ENCODING_PLAIN,   {0, 0, 0, 0}, LAO__ANY,                               {"tangent.X", "tangent.Y", "tangent.Z", "zoom.V"}},
     {"depth",         LAO_FORMAT_R32F,    LAO_SIZE_FULL, 0, 0, NULL,     0,                LAO_ENCODING_PLAIN,   {1, 1, 1, 1}, LAO__ANY,                               {"depth.Z", NULL, NULL, NULL}},
     {"zbuffer",       LAO_FORMAT_D32F,    LAO_SIZE_FULL, 0, 0, NULL,     0,                LAO_ENCODING_PLAIN,   {1, 0, 0, 0}, LAO__ANY,                               {NULL, NULL, NULL, NULL}},
+    {"far_tiles",     LAO_FORMAT_R32F,    LAO_SIZE_FULL, 0, 0, "*",      0,                LAO_ENCODING_PLAIN,   {0, 0, 0, 0}, {"cull_hidden", '=', 1},                {NULL, NULL, NULL, NULL}},
+    {"far",           LAO_FORMAT_R32F,    LAO_SIZE_FULL, 0, 0, "*",      0,                LAO_ENCODING_PLAIN,   {0, 0, 0, 0}, {"cull_hidden", '=', 1},                {NULL, NULL, NULL, NULL}},
     {"tensor",        LAO_FORMAT_RGBA32F, LAO_SIZE_FULL, 0, 0, "levels", 0,                LAO_ENCODING_PLAIN,   {0, 0, 0, 0}, {"occlusion", '=', 1},                  {NULL, NULL, NULL, NULL}},
     {"level",         LAO_FORMAT_R32UI,   LAO_SIZE_FULL, 0, 0, "levels", 0,                LAO_ENCODING_LEVEL,   {0, 0, 0, 0}, {"occlusion", '=', 1},                  {"axial%d.C", "axial%d.S", "axial%d.D", NULL}},
     {"level_tangent", LAO_FORMAT_RGBA8,   LAO_SIZE_FULL, 0, 0, "levels", 0,                LAO_ENCODING_SIGNED8, {LAO__UNKNOWN, LAO__UNKNOWN, LAO__UNKNOWN, LAO__UNKNOWN}, {"light", '=', LAO_LIGHT_AUTHOR},       {NULL, NULL, NULL, NULL}},
@@ -2210,14 +2238,25 @@ static const lao_pass_row lao__passes[] = {
      {LAO__WRITE("zbuffer")}, {LAO__READ("host_depth")}},
     /* G-buffer: colour and mask, tangent and zoom, linear depth (METHODS 1.1). One row of four draws a set: what the fragments need to know of the line's
        outline or of a fade costs where there is none, and who writes depth is tested late */
-    {"lines", LAO_PASS_DRAW_LINES, "lines", 0, LAO_STAGE_DRAW, LAO_SCOPE_PER_SET, LAO_REPEAT_NONE, NULL, LAO_BLEND_NONE, LAO_DEPTH_NEARER, LAO_CULL_NONE, {LAO__LINES, {"halo", '=', LAO_HALO_NONE}, {"trail", '!', LAO_TRAIL_OPACITY}},
+    {"lines", LAO_PASS_DRAW_LINES_FIRST, "lines", 0, LAO_STAGE_DRAW, LAO_SCOPE_PER_SET, LAO_REPEAT_NONE, NULL, LAO_BLEND_NONE, LAO_DEPTH_NEARER, LAO_CULL_NONE, {LAO__LINES, {"halo", '=', LAO_HALO_NONE}, {"trail", '!', LAO_TRAIL_OPACITY}},
      {LAO__CLEAR("color"), LAO__CLEAR("tangent"), LAO__CLEAR("depth"), LAO__KEEP("zbuffer")}, {LAO__READ("#points"), LAO__READ("#colors"), LAO__READ("#order")}},
-    {"lines_fading", LAO_PASS_DRAW_LINES, "lines_rim", 0, LAO_STAGE_DRAW, LAO_SCOPE_PER_SET, LAO_REPEAT_NONE, NULL, LAO_BLEND_NONE, LAO_DEPTH_NEARER, LAO_CULL_NONE, {LAO__LINES, {"halo", '=', LAO_HALO_NONE}, {"trail", '=', LAO_TRAIL_OPACITY}},
+    {"lines_fading", LAO_PASS_DRAW_LINES_FIRST, "lines_rim", 0, LAO_STAGE_DRAW, LAO_SCOPE_PER_SET, LAO_REPEAT_NONE, NULL, LAO_BLEND_NONE, LAO_DEPTH_NEARER, LAO_CULL_NONE, {LAO__LINES, {"halo", '=', LAO_HALO_NONE}, {"trail", '=', LAO_TRAIL_OPACITY}},
      {LAO__CLEAR("color"), LAO__CLEAR("tangent"), LAO__CLEAR("depth"), LAO__KEEP("zbuffer")}, {LAO__READ("#points"), LAO__READ("#colors"), LAO__READ("#order")}},
-    {"lines_rim", LAO_PASS_DRAW_LINES, "lines_rim", 0, LAO_STAGE_DRAW, LAO_SCOPE_PER_SET, LAO_REPEAT_NONE, NULL, LAO_BLEND_NONE, LAO_DEPTH_NEARER, LAO_CULL_NONE, {LAO__LINES, {"halo", '=', LAO_HALO_UNIFORM}},
+    {"lines_rim", LAO_PASS_DRAW_LINES_FIRST, "lines_rim", 0, LAO_STAGE_DRAW, LAO_SCOPE_PER_SET, LAO_REPEAT_NONE, NULL, LAO_BLEND_NONE, LAO_DEPTH_NEARER, LAO_CULL_NONE, {LAO__LINES, {"halo", '=', LAO_HALO_UNIFORM}},
      {LAO__CLEAR("color"), LAO__CLEAR("tangent"), LAO__CLEAR("depth"), LAO__KEEP("zbuffer")}, {LAO__READ("#points"), LAO__READ("#colors"), LAO__READ("#order")}},
-    {"lines_halo", LAO_PASS_DRAW_LINES, "lines_halo", 0, LAO_STAGE_DRAW, LAO_SCOPE_PER_SET, LAO_REPEAT_NONE, NULL, LAO_BLEND_NONE, LAO_DEPTH_NEARER, LAO_CULL_NONE, {LAO__LINES, {"halo", '=', LAO_HALO_DEPTH}},
+    {"lines_halo", LAO_PASS_DRAW_LINES_FIRST, "lines_halo", 0, LAO_STAGE_DRAW, LAO_SCOPE_PER_SET, LAO_REPEAT_NONE, NULL, LAO_BLEND_NONE, LAO_DEPTH_NEARER, LAO_CULL_NONE, {LAO__LINES, {"halo", '=', LAO_HALO_DEPTH}},
      {LAO__CLEAR("color"), LAO__CLEAR("tangent"), LAO__CLEAR("depth"), LAO__KEEP("zbuffer")}, {LAO__READ("#points"), LAO__READ("#colors"), LAO__READ("#order")}},
+    /* of many lines a part is drawn first; of the rest only what does not lie wholly behind the farthest depth around it */
+    {"far_tiles", LAO_PASS_FULLSCREEN, "far", 0, LAO_STAGE_DRAW, LAO_SCOPE_PER_SET, LAO_REPEAT_NONE, NULL, LAO_BLEND_NONE, LAO_DEPTH_NONE, LAO_CULL_NONE, {LAO__LINES, {"cull_hidden", '=', 1}, {"@color", '=', 0}},
+     {LAO__WRITE_LEVEL("far_tiles", 3)}, {LAO__READ("zbuffer")}},
+    {"far", LAO_PASS_FULLSCREEN, "far", 1, LAO_STAGE_DRAW, LAO_SCOPE_PER_SET, LAO_REPEAT_NONE, NULL, LAO_BLEND_NONE, LAO_DEPTH_NONE, LAO_CULL_NONE, {LAO__LINES, {"cull_hidden", '=', 1}, {"@color", '=', 0}},
+     {LAO__WRITE_LEVEL("far", 3)}, {LAO__READ_LEVEL("far_tiles", 3)}},
+    {"lines_rest", LAO_PASS_DRAW_LINES_REST, "lines", 1, LAO_STAGE_DRAW, LAO_SCOPE_PER_SET, LAO_REPEAT_NONE, NULL, LAO_BLEND_NONE, LAO_DEPTH_NEARER, LAO_CULL_NONE, {LAO__LINES, {"cull_hidden", '=', 1}, {"halo", '=', LAO_HALO_NONE}},
+     {LAO__KEEP("color"), LAO__KEEP("tangent"), LAO__KEEP("depth"), LAO__KEEP("zbuffer")}, {LAO__READ("#points"), LAO__READ("#colors"), LAO__READ("#order"), LAO__READ_LEVEL("far", 3)}},
+    {"lines_rim_rest", LAO_PASS_DRAW_LINES_REST, "lines_rim", 1, LAO_STAGE_DRAW, LAO_SCOPE_PER_SET, LAO_REPEAT_NONE, NULL, LAO_BLEND_NONE, LAO_DEPTH_NEARER, LAO_CULL_NONE, {LAO__LINES, {"cull_hidden", '=', 1}, {"halo", '=', LAO_HALO_UNIFORM}},
+     {LAO__KEEP("color"), LAO__KEEP("tangent"), LAO__KEEP("depth"), LAO__KEEP("zbuffer")}, {LAO__READ("#points"), LAO__READ("#colors"), LAO__READ("#order"), LAO__READ_LEVEL("far", 3)}},
+    {"lines_halo_rest", LAO_PASS_DRAW_LINES_REST, "lines_halo", 1, LAO_STAGE_DRAW, LAO_SCOPE_PER_SET, LAO_REPEAT_NONE, NULL, LAO_BLEND_NONE, LAO_DEPTH_NEARER, LAO_CULL_NONE, {LAO__LINES, {"cull_hidden", '=', 1}, {"halo", '=', LAO_HALO_DEPTH}},
+     {LAO__KEEP("color"), LAO__KEEP("tangent"), LAO__KEEP("depth"), LAO__KEEP("zbuffer")}, {LAO__READ("#points"), LAO__READ("#colors"), LAO__READ("#order"), LAO__READ_LEVEL("far", 3)}},
     /* the host's G-buffer instead of our lines: its mask as depth, for the passes that skip background by it */
     {"cover", LAO_PASS_FULLSCREEN, "cover", 0, LAO_STAGE_DRAW, LAO_SCOPE_PER_SET, LAO_REPEAT_NONE, NULL, LAO_BLEND_NONE, LAO_DEPTH_ALWAYS, LAO_CULL_NONE, {{"@color", '>', 0}},
      {LAO__CLEAR("zbuffer")}, {LAO__READ("color")}},
@@ -3737,6 +3776,11 @@ void lao_plan_print(const lao_graph *graph, const lao_plan *plan,
 
 #define LAO__KEY_SIZE 9
 #define LAO__GROUPS 256u /* of a chunk, at most */
+enum {
+    LAO__PARTED = 64, /* lines; fewer are one part */
+    LAO__PART = 4,    /* of so many lines one is in the first part */
+    LAO__DENSE = 4    /* pixels of a segment, at most, where parts pay */
+};
 
 typedef struct lao__lines {
     lao_chunk *chunks;
@@ -4055,6 +4099,7 @@ typedef struct lao__texels {
     float *points;   /* x, y, z, time */
     uint8_t *colors; /* RGBA */
     uint64_t count;
+    uint64_t part; /* of them, in the first part */
     int timed;
 } lao__texels;
 
@@ -4116,16 +4161,28 @@ static void lao__run(lao__texels *out, const lao_lines_desc *desc, uint32_t firs
     lao__texel(out, desc, i ? second : last, last, 1);
 }
 
-static void lao__lines_walk(lao__texels *out, const lao_lines_desc *desc, const uint32_t *offsets) {
-    uint32_t line, i, first;
-    for (line = 0; line < desc->line_count; line++) {
-        for (first = i = offsets[line]; i < offsets[line + 1]; i++) {
-            if (!lao__finite(desc->points + 3 * (size_t)i, 3)) {
-                lao__run(out, desc, first, i);
-                first = i + 1;
-            }
+static void lao__line(lao__texels *out, const lao_lines_desc *desc, uint32_t begin, uint32_t end) {
+    uint32_t i, first;
+    for (first = i = begin; i < end; i++) {
+        if (!lao__finite(desc->points + 3 * (size_t)i, 3)) {
+            lao__run(out, desc, first, i);
+            first = i + 1;
         }
-        lao__run(out, desc, first, i);
+    }
+    lao__run(out, desc, first, i);
+}
+
+/* Every LAO__PART-th line, which make the first part of many, then the others. */
+static void lao__lines_walk(lao__texels *out, const lao_lines_desc *desc, const uint32_t *offsets) {
+    uint32_t line, every = desc->line_count < LAO__PARTED ? 1 : LAO__PART;
+    for (line = 0; line < desc->line_count; line += every) {
+        lao__line(out, desc, offsets[line], offsets[line + 1]);
+    }
+    out->part = out->count;
+    for (line = 0; line < desc->line_count; line++) {
+        if (line % every != 0) {
+            lao__line(out, desc, offsets[line], offsets[line + 1]);
+        }
     }
 }
 
@@ -4291,6 +4348,10 @@ static lao_result lao__chunk_make(lao_context *context, lao_chunk *chunk, const 
                                                 &chunk->buffers[LAO__BUFFER_COLORS]);
     }
     chunk->count = count - 3;
+    if (texels->part > first) {
+        chunk->part =
+            texels->part - first < chunk->count ? (uint32_t)(texels->part - first) : chunk->count;
+    }
     if (result == LAO_OK && texels->timed) {
         result = lao__chunk_order(context, chunk, texels->points + 4 * first);
     }
@@ -4677,8 +4738,29 @@ static lao_result lao__view_reserve(lao_context *context, lao__view *view, uint3
 }
 
 /* Resolves one set's settings; sets *structural when a value that shapes the plan changed. */
-static lao_result lao__set_resolve(lao_context *context, lao__view *view, uint32_t set,
-                                   const lao_set *source, int *structural) {
+/* Is it worth while to draw a set's lines in two parts? Not where few lie behind each other. */
+static int lao__parted(const lao__view *view, const lao_frame *frame, uint32_t set,
+                       const float *values) {
+    const int trail = (int)values[LAO_SETTING_ID_trail];
+    const lao_draw *draw = &view->draws[set];
+    const double factor = values[LAO_SETTING_ID_supersampling];
+    const double pixels = factor * factor * view->width * view->height;
+    double segments = 0, rest = 0;
+    uint32_t i;
+    for (i = 0; i < draw->chunk_count; i++) {
+        segments += draw->chunks[i].count;
+        rest += draw->chunks[i].count - draw->chunks[i].part;
+    }
+    for (i = 0; i < frame->import_count; i++) { /* a G-buffer of the host's: nothing is drawn */
+        const char *image = frame->imports[i].image;
+        rest = image && strcmp(image, "host_depth") == 0 ? rest : 0;
+    }
+    return values[LAO_SETTING_ID_cull_hidden] > 0 && trail != LAO_TRAIL_TAPER &&
+           trail != LAO_TRAIL_OPACITY && rest > 0 && segments * LAO__DENSE >= pixels;
+}
+
+static lao_result lao__set_resolve(lao_context *context, lao__view *view, const lao_frame *frame,
+                                   uint32_t set, const lao_set *source, int *structural) {
     float *values = view->values + (size_t)set * context->value_count;
     uint32_t m, i, first = 0;
     char text[128];
@@ -4701,11 +4783,15 @@ static lao_result lao__set_resolve(lao_context *context, lao__view *view, uint32
                      (double)fresh[fault], (double)row->minimum, (double)row->maximum);
             return lao__fail(context, LAO_LOG_SETTING_RANGE, text);
         }
+        memcpy(block, fresh, module->setting_count * sizeof *fresh);
+        if (m == 0) { /* the plan follows what is done */
+            view->draws[set].parted = lao__parted(view, frame, set, fresh);
+            fresh[LAO_SETTING_ID_cull_hidden] = view->draws[set].parted ? 1.0f : 0.0f;
+        }
         for (i = 0; i < module->setting_count; i++) {
             *structural |= module->settings[i].structural && fresh[i] != values[first + i];
         }
         memcpy(values + first, fresh, module->setting_count * sizeof *fresh);
-        memcpy(block, fresh, module->setting_count * sizeof *fresh);
         first += module->setting_count;
     }
     view->value_rows[set] = values;
@@ -4989,8 +5075,8 @@ static lao_window lao__window(const float *values, float time) {
 }
 
 /* Settings, lines and object of one set. */
-static lao_result lao__frame_set(lao_context *context, lao__view *view, const lao_set *set,
-                                 uint32_t index, float time, int *structural) {
+static lao_result lao__frame_set(lao_context *context, lao__view *view, const lao_frame *frame,
+                                 const lao_set *set, uint32_t index, int *structural) {
     const lao__lines *lines = set ? lao__lines_get(context, set->lines) : NULL;
     const lao__object *object = set ? lao__object_get(context, set->object) : NULL;
     lao_draw *draw = &view->draws[index];
@@ -5024,8 +5110,8 @@ static lao_result lao__frame_set(lao_context *context, lao__view *view, const la
             view->further_items[i] = object->further_items[i];
         }
     }
-    result = lao__set_resolve(context, view, index, set, structural);
-    draw->window = lao__window(view->value_rows[index], time);
+    result = lao__set_resolve(context, view, frame, index, set, structural);
+    draw->window = lao__window(view->value_rows[index], frame->time);
     return result;
 }
 
@@ -5036,18 +5122,20 @@ static lao_result lao__frame_sets(lao_context *context, lao__view *view, const l
     view->item_count = 0;
     memset(view->further_items, 0, sizeof view->further_items);
     for (s = 0; s < sets && result == LAO_OK; s++) {
-        result = lao__frame_set(context, view, s < frame->set_count ? &frame->sets[s] : NULL, s,
-                                frame->time, structural);
+        result = lao__frame_set(context, view, frame, s < frame->set_count ? &frame->sets[s] : NULL,
+                                s, structural);
     }
     return result;
 }
 
 uint32_t lao_step_draws(const lao_execution *execution, const lao_plan_step *step,
                         const lao_chunk **chunks) {
-    static const lao_chunk nothing = {{NULL}, 0, NULL, 0};
+    static const lao_chunk nothing = {{NULL}, 0, 0, NULL, 0};
     const lao_draw *draw = &execution->draws[step->set];
     switch (step->row->kind) {
     case LAO_PASS_DRAW_LINES:
+    case LAO_PASS_DRAW_LINES_FIRST:
+    case LAO_PASS_DRAW_LINES_REST:
         *chunks = draw->chunks;
         return draw->chunk_count;
     case LAO_PASS_DRAW_MESH:
@@ -5069,6 +5157,13 @@ static int lao__group_seen(const lao_group *group, const lao_window *window) {
     return !(period > 0 ? period * floor(high / period) < low : low > 0 || high < 0);
 }
 
+static void lao__range_part(lao_range *range, const lao_draw *draw, const lao_chunk *chunk,
+                            lao_pass_kind kind) {
+    const uint32_t part = draw->parted ? chunk->part : chunk->count;
+    range->first = kind == LAO_PASS_DRAW_LINES_REST ? part : 0;
+    range->count = kind == LAO_PASS_DRAW_LINES_FIRST ? part : chunk->count - range->first;
+}
+
 int lao_step_range(const lao_execution *execution, const lao_plan_step *step,
                    const lao_chunk *chunk, lao_range *range) {
     const lao_window *window = &execution->draws[step->set].window;
@@ -5079,7 +5174,7 @@ int lao_step_range(const lao_execution *execution, const lao_plan_step *step,
         ordered |= step->reads[i] == LAO_READ_BUFFER + LAO__BUFFER_ORDER;
     }
     if (!ordered || !window->limited || !groups) {
-        range->count = chunk->count;
+        lao__range_part(range, &execution->draws[step->set], chunk, step->row->kind);
         return range->next++ == 0 && range->count > 0;
     }
     while (g < chunk->group_count && !lao__group_seen(&groups[g], window)) {

@@ -1512,7 +1512,7 @@ static void lao__gl_draw(const lao__gl *gl, const lao_plan_step *step,
     uint32_t i;
     for (i = 0; i < count; i++) {
         lao__gl_bind_buffers(gl, step, &chunks[i]);
-        if (step->row->kind == LAO_PASS_DRAW_LINES) {
+        if (LAO_PASS_DRAWS_LINES(step->row->kind)) {
             lao_range range = {0, 0, 0};
             while (lao_step_range(execution, step, &chunks[i], &range))
                 lao__gl_draw_segments(gl, &range);

@@ -1543,7 +1543,7 @@ static void lao__vk_draw(const lao__vk *vk, const lao__vk_build *build,
         if (chunk->buffers[i])
             ((lao__vk_texels *)chunk->buffers[i])->object.last_use = vk->epoch;
     }
-    if (step->row->kind == LAO_PASS_DRAW_LINES) {
+    if (LAO_PASS_DRAWS_LINES(step->row->kind)) {
         while (lao_step_range(execution, step, chunk, &range))
             lao__vk_draw_segments(vk, build, execution, step, &range, commands);
     } else if (step->row->kind == LAO_PASS_DRAW_MESH)
@@ -1566,7 +1566,7 @@ static void lao__vk_step(const lao__vk *vk, const lao__vk_build *build,
     vk->call.CmdBindPipeline(commands, VK_PIPELINE_BIND_POINT_GRAPHICS, pipeline->pipeline);
     vk->call.CmdPushConstants(commands, layout, LAO__VK_STAGES, 0, sizeof step->uniforms,
                               step->uniforms);
-    if (step->row->kind == LAO_PASS_DRAW_LINES)
+    if (LAO_PASS_DRAWS_LINES(step->row->kind))
         vk->call.CmdBindIndexBuffer(commands, vk->quads.buffer, 0, VK_INDEX_TYPE_UINT16);
     for (i = 0; i < count; i++) {
         vk->call.CmdBindDescriptorSets(commands, VK_PIPELINE_BIND_POINT_GRAPHICS, layout, 0, 1,

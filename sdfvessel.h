@@ -432,10 +432,11 @@ SDV_API void sdv_trace_shapes(const sdv_grid *grid, const sdv_shapes *shapes, co
    seen from p. `bias` (mm) is the start, off the surface. */
 SDV_API float sdv_shadow(const sdv_grid *grid, const sdv_shapes *shapes, lao_v3 p, lao_v3 light,
                          float hardness, float bias);
-/* Openness of p along its normal, 0 .. 1, from the field at 5 places up to `reach` mm away;
-   `inside` non-zero: of a wall seen from within, the room inside counts. */
-SDV_API float sdv_openness(const sdv_grid *grid, lao_v3 p, lao_v3 normal, float reach,
-                           uint32_t inside);
+/* Openness of p along its normal, 0 .. 1, from the field of the tree, combined with shapes (NULL:
+   none), at 5 places up to `reach` mm away; `inside` non-zero: of a wall seen from within, the room
+   inside counts. */
+SDV_API float sdv_openness(const sdv_grid *grid, const sdv_shapes *shapes, lao_v3 p, lao_v3 normal,
+                           float reach, uint32_t inside);
 
 /* Normal for shading at a place of the surface of `cone`: where segments meet, their normals go
    over into each other within `smoothness` of the radius, so that a chain of short segments has no
@@ -488,6 +489,24 @@ typedef struct sdv_pull_push_desc {
    NULL_ARGUMENT, IMAGE_SIZE, MEMORY, CANCELLED (the image is then in between). */
 SDV_API lao_result sdv_pull_push(const sdv_host *host, const sdv_pull_push_desc *desc,
                                  uint32_t *empty);
+
+/* X as SDV_SETTINGS, below: of the same on the device. */
+#define SDV_PULL_PUSH_SETTINGS(X)                                                                  \
+    X(pull, ENUM, 0, 1, 0, 1, "", "mean|sum", "weight of a child: 1/4, 1")                         \
+    X(push, ENUM, 0, 1, 0, 1, "", "equal|spline", "the 4 nearest parents: 1/4; 9, 3, 3, 1 / 16")   \
+    X(exponent, INT, 1, 1023, 1, 1, "", "", "k: how little a pixel takes over from its parents")
+typedef struct sdv_pull_push_settings {
+    uint64_t set;
+    float pull, push, exponent;
+} sdv_pull_push_settings;
+
+/* A module (lao_desc.modules) that fills a host's own image in lao_render, to the same bits as
+   sdv_pull_push. Each frame imports "pull_push_image" (RGBA32F; three channels and the weight; as
+   large as the view, row 0 at the bottom) and (Optional) "pull_push_result", an image of the host's
+   that is written (LAO_HOST_WRITABLE); lao_read knows it as "pull_push_filled" too. Settings: of
+   the frame's first set, which need hold nothing else. More channels: more frames. Static. Thread:
+   any. */
+SDV_API const lao_module *sdv_pull_push_module(void);
 
 /* ------------------------------------------------------------------------------------------------
  * drawing: a module for lao_desc.modules, whose object is a grid */
@@ -589,6 +608,7 @@ typedef struct sdv_object {
     lao_object_buffer buffers[8];
     lao_v4 box[2];
     lao_v4 shapes[1 + 4 * SDV_MOST_SHAPES];
+    lao_v4 *nearest;     /* private: the shapes, then the cones in a hierarchy, where colours ask */
     uint32_t on_device;  /* sdv_object_make_tree: 1 when the device builds the field */
     sdv_grid grid;       /* of sdv_object_make_tree; on_device: its box and cones, no cells */
     uint32_t image_size; /* private, like what follows */
@@ -618,8 +638,9 @@ SDV_API lao_result sdv_object_make(const sdv_host *host, const sdv_grid *grid,
                                    const uint8_t *colors, sdv_object *object);
 /* Combines it with shapes, before it is created or in an update. `colors`: (Optional) red, green,
    blue of the surface of each, display values; red below 0: the colour of the vessel that is
-   nearest to the place (L19 Fig. 11; as exact as the grid is far from vessels). `shapes->fields` is
-   referred to. Fails with NULL_ARGUMENT, SHAPES. */
+   nearest to the place (L19 Fig. 11), exactly, however far it is: for that cones are put into a
+   hierarchy of balls, in O(n log n). `shapes->fields` is referred to. Fails with NULL_ARGUMENT,
+   SHAPES, MEMORY. */
 SDV_API lao_result sdv_object_shapes(const sdv_host *host, const sdv_shapes *shapes,
                                      const float *colors, sdv_object *object);
 /* The same for a tree whose nodes may change every frame: only its cones are uploaded, and rows of
@@ -634,7 +655,7 @@ SDV_API lao_result sdv_object_make_tree(const sdv_host *host, const sdv_tree *tr
                                         const uint8_t *colors, sdv_object *object);
 /* After the host changed tree->nodes[nodes[i]], i < count: `desc` is then what lao_object_update
    takes. The box stays while the tree is inside. Fails like sdv_grid_update, with the object as
-   before. */
+   before; or with MEMORY for the nearest vessels of shapes, which are then not to be drawn. */
 SDV_API lao_result sdv_object_move(const sdv_host *host, const sdv_tree *tree,
                                    const uint32_t *nodes, uint32_t count, sdv_object *object);
 /* Describes a mesh for lao_object_create, with copies of all it needs. Free with sdv_object_free.
@@ -1076,7 +1097,8 @@ LAO_FN sdv_box sdv_box_grown(sdv_box box, float reach) {
     return r;
 }
 #define SDV_POLISH_ROUNDS 2
-/* Newton's step from a point close to the surface onto it: where the field's tangent is 0. */
+/* Newton's step from a point close to the surface onto it: where the field's tangent is 0. Of a ray
+   that grazes it may lead away; then the place before is kept. */
 LAO_FN float sdv_polish(float t, float distance, lao_v3 gradient, lao_v3 direction, float cell) {
     LAO_EXACT float slope = lao_v3_dot(gradient, direction);
     LAO_EXACT float steep = lao_max(lao_abs(slope), 0.02f);
@@ -1280,6 +1302,37 @@ LAO_FN sdv_solid sdv_solid_add(sdv_solid s, float distance, lao_int operation, l
     return r;
 }
 
+/* The nearest vessel to a place, however far: a complete binary tree of balls around cones, node i
+   over 2 i and 2 i + 1, gone through in that order from the root, 1, to 0. A leaf has up to four.
+ */
+#define SDV_LEAF_CONES 4
+/* Could a ball hold something as near as `least`? The margin is for rounding. */
+LAO_FN bool sdv_ball_reaches(lao_v3 p, lao_v4 ball, float least) {
+    lao_v3 q = lao_v3_sub(p, lao_v3_make(ball.x, ball.y, ball.z));
+    LAO_EXACT float apart = lao_sqrt(lao_v3_dot(q, q));
+    LAO_EXACT float nearest = 0.999999f * apart - ball.w;
+    return nearest <= least;
+}
+/* The next node behind all that is below this one; 0: none. */
+LAO_FN lao_int sdv_ball_next(lao_int node) {
+    lao_int next = node;
+    for (lao_int i = 0; i < 24; i++) {
+        if (next / 2 * 2 == next) {
+            break;
+        }
+        next = next / 2;
+    }
+    return next > 0 ? next + 1 : 0;
+}
+/* Of two cones the nearer, of two as near the lower. */
+LAO_FN sdv_near sdv_nearer(sdv_near n, float distance, float cone) {
+    sdv_near r = n;
+    if (distance < n.distance || (distance == n.distance && cone < n.cone)) {
+        r.distance = distance;
+        r.cone = cone;
+    }
+    return r;
+}
 /* Part of a ray in which a tree with shapes is looked for: only a union adds to the tree's box. */
 LAO_FN lao_v2 sdv_solid_span(lao_v2 box, bool united) {
     if (united) {
@@ -2159,11 +2212,14 @@ LAO_FN float sdv_style_tone(float facing, float ambient, float diffuse, float li
     return lao_clamp01(r);
 }
 /* What the void keeps of its ink where the ray passes a vessel at d_min mm: all beside it, nothing
-   from `reach` mm on, and all everywhere without a reach. */
-LAO_FN float sdv_void_share(float d_min, float reach) {
-    LAO_EXACT float near_ = lao_clamp01(1.0f - lao_max(d_min, 0.0f) / lao_max(reach, 1.0e-6f));
-    LAO_EXACT float r = near_ * near_ * (3.0f - 2.0f * near_);
-    return reach > 0.0f ? r : 1.0f;
+   from `reach` mm on (0: no end), and nothing where it is so steep that strokes would be grey. wide:
+   periods per pixel. */
+LAO_FN float sdv_void_share(float d_min, float reach, float wide) {
+    LAO_EXACT float part = lao_clamp01(1.0f - lao_max(d_min, 0.0f) / lao_max(reach, 1.0e-6f));
+    LAO_EXACT float all = part * part * (3.0f - 2.0f * part);
+    LAO_EXACT float seen = lao_clamp01(2.0f - 2.0f * wide / SDV_HALO_FOOTPRINT);
+    LAO_EXACT float r = seen * (reach > 0.0f ? all : 1.0f);
+    return r;
 }
 /* Red near, blue far (METHODS 6.1, RSH06). */
 LAO_FN lao_v3 sdv_chromadepth(float depth) {
@@ -2263,6 +2319,14 @@ static void sdv__give(const lao_allocator *allocator, void *taken) {
         memcpy(&bytes, memory, sizeof bytes);
         allocator->release(allocator->user, memory, bytes);
     }
+}
+
+/* Number k of a vector. */
+static float sdv__v3_at(lao_v3 v, uint32_t k) {
+    return k == 0 ? v.x : k == 1 ? v.y : v.z;
+}
+static float sdv__v4_at(lao_v4 v, uint32_t k) {
+    return k == 0 ? v.x : k == 1 ? v.y : k == 2 ? v.z : v.w;
 }
 
 /* Cuts one block into arrays: a first round with base NULL counts, a second one with the memory
@@ -2831,13 +2895,12 @@ static void sdv__tree_info(const sdv__build *b, sdv_tree *t) {
     info->joined = b->joined;
     for (i = 0; i < t->node_count; i++) {
         uint32_t children = t->child_counts[i];
-        const float *p = &t->nodes[i].x;
         info->leaves += children == 0 && t->parents[i] != SDV_NONE;
         info->branches += children >= 2;
         info->multifurcations += children >= 3;
         info->max_children = children > info->max_children ? children : info->max_children;
         for (k = 0; k < 3; k++) {
-            float v = p[k];
+            float v = sdv__v4_at(t->nodes[i], k);
             info->bounds[0][k] = i == 0 || v < info->bounds[0][k] ? v : info->bounds[0][k];
             info->bounds[1][k] = i == 0 || v > info->bounds[1][k] ? v : info->bounds[1][k];
         }
@@ -3585,8 +3648,11 @@ static size_t sdv__layer_size(const sdv_grid *g) {
     return (size_t)g->size[0] * g->size[1];
 }
 /* ---- which cells list something: a bit each, words along x */
+static uint32_t sdv__parts(uint32_t n, uint32_t size) {
+    return (n + size - 1) / size;
+}
 static uint32_t sdv__words(const sdv_grid *g) {
-    return (g->size[0] + 31) / 32;
+    return sdv__parts(g->size[0], 32);
 }
 /* row: y + size[1] z */
 static uint32_t *sdv__bits(const sdv_grid *g, size_t row) {
@@ -3608,9 +3674,9 @@ static uint32_t sdv__next_bit(const uint32_t *bits, uint32_t x, uint32_t end) {
 static void sdv__ball_bounds(const lao_v4 *balls, uint32_t count, double low[3], double high[3]) {
     uint32_t i, k;
     for (i = 0; i < count; i++) {
-        const float *p = &balls[i].x;
         for (k = 0; k < 3; k++) {
-            double a = (double)p[k] - (double)balls[i].w, b = (double)p[k] + (double)balls[i].w;
+            double p = (double)sdv__v4_at(balls[i], k);
+            double a = p - (double)balls[i].w, b = p + (double)balls[i].w;
             low[k] = i == 0 || a < low[k] ? a : low[k];
             high[k] = i == 0 || b > high[k] ? b : high[k];
         }
@@ -3619,7 +3685,7 @@ static void sdv__ball_bounds(const lao_v4 *balls, uint32_t count, double low[3],
 /* Cubic cells around all balls, and two more at every side. */
 static int sdv__grid_fit(const sdv_tree *tree, uint32_t resolution, sdv_grid *g) {
     double low[3], high[3], most = 0;
-    float *origin = &g->origin.x;
+    float origin[3];
     uint32_t k;
     if (resolution < 16 || resolution > SDV__AXIS) {
         return 0;
@@ -3634,6 +3700,7 @@ static int sdv__grid_fit(const sdv_tree *tree, uint32_t resolution, sdv_grid *g)
         g->size[k] = (uint32_t)ceil((high[k] - low[k]) / (double)g->cell) + 4;
         origin[k] = (float)(0.5 * (low[k] + high[k]) - 0.5 * (double)g->size[k] * (double)g->cell);
     }
+    g->origin = lao_v3_make(origin[0], origin[1], origin[2]);
     return 1;
 }
 static int sdv__grid_frame(const sdv_tree *tree, const sdv_grid_desc *desc, sdv_grid *g) {
@@ -3661,12 +3728,12 @@ static int sdv__grid_frame(const sdv_tree *tree, const sdv_grid_desc *desc, sdv_
 /* Are all balls inside the box? */
 static int sdv__grid_holds(const sdv_grid *g, const sdv_tree *tree) {
     double low[3], high[3];
-    const float *origin = &g->origin.x;
     uint32_t k;
     sdv__ball_bounds(tree->nodes, tree->node_count, low, high);
     for (k = 0; k < 3; k++) {
-        double end = (double)origin[k] + (double)g->size[k] * (double)g->cell;
-        if (!(low[k] >= (double)origin[k] && high[k] <= end)) {
+        double origin = (double)sdv__v3_at(g->origin, k);
+        double end = origin + (double)g->size[k] * (double)g->cell;
+        if (!(low[k] >= origin && high[k] <= end)) {
             return 0;
         }
     }
@@ -3715,13 +3782,12 @@ typedef struct sdv__raster {
 
 static sdv__raster sdv__raster_make(const sdv_grid *g, const lao_v4 *cone) {
     sdv__raster r;
-    const float *a = &cone[0].x, *b = &cone[1].x, *o = &g->origin.x;
     double reach = (double)sdv_list_reach(g->cell) + 0.02 * (double)g->cell;
-    int k;
+    uint32_t k;
     for (k = 0; k < 3; k++) {
-        reach += 1e-6 * (fabs((double)a[k]) + fabs((double)b[k]) + fabs((double)o[k]));
-        r.a[k] = (double)a[k];
-        r.b[k] = (double)b[k];
+        r.a[k] = (double)sdv__v4_at(cone[0], k);
+        r.b[k] = (double)sdv__v4_at(cone[1], k);
+        reach += 1e-6 * (fabs(r.a[k]) + fabs(r.b[k]) + fabs((double)sdv__v3_at(g->origin, k)));
     }
     r.ra = (double)cone[0].w * (1 + 1e-6) + reach;
     r.rb = (double)cone[1].w * (1 + 1e-6) + reach;
@@ -3751,7 +3817,8 @@ static int sdv__raster_cut(const sdv__raster *r, int axis, double at, double t[2
 /* Cells of an axis that the balls of t may reach: range[0] .. range[1] - 1. */
 static void sdv__raster_range(const sdv_grid *g, const sdv__raster *r, int axis, const double t[2],
                               uint32_t range[2]) {
-    double low = 0, high = 0, origin = (double)(&g->origin.x)[axis], n = (double)g->size[axis];
+    double low = 0, high = 0, origin = (double)sdv__v3_at(g->origin, (uint32_t)axis),
+           n = (double)g->size[axis];
     int i;
     for (i = 0; i < 2; i++) {
         double c = r->a[axis] + t[i] * (r->b[axis] - r->a[axis]);
@@ -3765,7 +3832,7 @@ static void sdv__raster_range(const sdv_grid *g, const sdv__raster *r, int axis,
     range[1] = high > 0 ? (high < n ? (uint32_t)high : g->size[axis]) : 0;
 }
 static double sdv__plane(const sdv_grid *g, int axis, uint32_t i) {
-    return (double)(&g->origin.x)[axis] + ((double)i + 0.5) * (double)g->cell;
+    return (double)sdv__v3_at(g->origin, (uint32_t)axis) + ((double)i + 0.5) * (double)g->cell;
 }
 /* Calls visit(arg, cell, centre) for every cell of layer z that the cone may be listed in. */
 typedef void (*sdv__visitor)(void *arg, uint32_t cell, lao_v3 centre);
@@ -3986,7 +4053,7 @@ static void sdv__column(sdv_grid *g, uint32_t x, uint32_t y, const uint32_t *bes
     sdv__envelope e;
     uint32_t z, nz = g->size[2];
     for (z = 0; z < nz; z++) {
-        uint32_t cell = best[z * SDV__WIDE];
+        uint32_t cell = best[(size_t)z * SDV__WIDE];
         int32_t dx = (int32_t)(cell & 65535u) - (int32_t)x;
         int32_t dy = (int32_t)(cell >> 16) - (int32_t)y;
         apart[z] = cell == SDV_NONE ? -1 : dx * dx + dy * dy;
@@ -4001,7 +4068,7 @@ static void sdv__column(sdv_grid *g, uint32_t x, uint32_t y, const uint32_t *bes
         }
         winner = e.place[k];
         dz = winner - (int32_t)z;
-        cell = best[winner * SDV__WIDE];
+        cell = best[(size_t)winner * SDV__WIDE];
         sdv__nearest_write(g, sdv__row(g, y, z) + x,
                            sdv__row(g, cell >> 16, (uint32_t)winner) + (cell & 65535u),
                            apart[winner] + dz * dz, stale);
@@ -4012,7 +4079,8 @@ static void sdv__columns(sdv_grid *g, uint32_t x0, uint32_t y, const unsigned ch
     uint32_t best[SDV__AXIS * SDV__WIDE], i, z;
     uint32_t wide = g->size[0] - x0 < SDV__WIDE ? g->size[0] - x0 : (uint32_t)SDV__WIDE;
     for (z = 0; z < g->size[2]; z++) {
-        memcpy(best + z * SDV__WIDE, g->layer + sdv__row(g, y, z) + x0, wide * sizeof *best);
+        memcpy(best + (size_t)z * SDV__WIDE, g->layer + sdv__row(g, y, z) + x0,
+               wide * sizeof *best);
     }
     for (i = 0; i < wide; i++) {
         if (!wanted || wanted[i]) {
@@ -4206,7 +4274,7 @@ SDV_API void sdv_grid_free(sdv_grid *grid) {
    found anew in the layers whose occupied cells change, and in those columns along z where that
    matters. Blocks of cells that are nearer to others than to all that changes are left out from the
    start. */
-enum { SDV__BLOCK = 8 };
+#define SDV__BLOCK 8u
 typedef struct sdv__change {
     sdv_grid *grid;
     uint32_t *changed;         /* cones, ascending */
@@ -4630,7 +4698,7 @@ static lao_result sdv__change_prepare(sdv__work *work, sdv__change *c, uint64_t 
     const lao_allocator *a = &g->allocator;
     uint32_t k, lists;
     for (k = 0; k < 3; k++) {
-        c->blocks[k] = (g->size[k] + SDV__BLOCK - 1) / SDV__BLOCK;
+        c->blocks[k] = sdv__parts(g->size[k], SDV__BLOCK);
     }
     c->stale = (unsigned char *)sdv__take(a, g->cell_count, 1);
     c->close =
@@ -4696,7 +4764,7 @@ static lao_result sdv__grid_change(const sdv_host *host, const sdv_tree *tree,
     work.host = host;
     work.done = 0;
     work.total =
-        5 * (uint64_t)grid->size[2] + grid->size[1] + (grid->size[2] + SDV__BLOCK - 1) / SDV__BLOCK;
+        5 * (uint64_t)grid->size[2] + grid->size[1] + sdv__parts(grid->size[2], SDV__BLOCK);
     if (sdv__changed_cones(tree, nodes, count, &c)) {
         result = sdv__change_prepare(&work, &c, &sum);
     } else {
@@ -4867,15 +4935,18 @@ static sdv_march sdv__least(const sdv_grid *g, const sdv_ray *ray, sdv_march m) 
 /* On to the surface from a point close to it. */
 static void sdv__land(const sdv_grid *g, const sdv_ray *ray, const sdv_march *m, sdv_hit *hit) {
     lao_v3 gradient = lao_v3_make(0.0f, 0.0f, 1.0f);
-    float t = m->t;
+    float t = m->t, off = SDV_FAR;
     int i;
     for (i = 0; i <= SDV_POLISH_ROUNDS; i++) {
-        const lao_v4 *ends;
-        sdv_near n;
-        hit->position = lao_v3_along(ray->origin, ray->direction, t);
-        n = sdv__near_at(g, sdv__cell_at(g, hit->position), hit->position, ray->direction);
-        ends = g->cones + 2 * (size_t)n.cone;
-        gradient = sdv_round_cone_gradient(hit->position, ends[0], ends[1]);
+        lao_v3 p = lao_v3_along(ray->origin, ray->direction, t);
+        sdv_near n = sdv__near_at(g, sdv__cell_at(g, p), p, ray->direction);
+        const lao_v4 *ends = g->cones + 2 * (size_t)n.cone;
+        if (lao_abs(n.distance) > off) {
+            break;
+        }
+        off = lao_abs(n.distance);
+        gradient = sdv_round_cone_gradient(p, ends[0], ends[1]);
+        hit->position = p;
         hit->cone = (uint32_t)n.cone;
         hit->t = t;
         t = sdv_polish(t, n.distance, gradient, ray->direction, g->cell);
@@ -4982,14 +5053,18 @@ static lao_v3 sdv__solid_gradient(const sdv_grid *g, const sdv_shapes *shapes, c
 }
 static void sdv__solid_land(const sdv_grid *g, const sdv_shapes *shapes, const sdv_ray *ray,
                             float t, sdv_hit *hit, uint32_t *shape) {
-    lao_v3 gradient;
+    float off = SDV_FAR;
     int i;
     for (i = 0; i <= SDV_POLISH_ROUNDS; i++) {
         uint32_t cone = 0;
-        sdv_solid s;
-        hit->position = lao_v3_along(ray->origin, ray->direction, t);
-        s = sdv__solid_at(g, shapes, hit->position, &cone);
-        gradient = sdv__solid_gradient(g, shapes, &s, hit->position, cone);
+        lao_v3 p = lao_v3_along(ray->origin, ray->direction, t), gradient;
+        sdv_solid s = sdv__solid_at(g, shapes, p, &cone);
+        if (lao_abs(s.distance) > off) {
+            break;
+        }
+        off = lao_abs(s.distance);
+        gradient = sdv__solid_gradient(g, shapes, &s, p, cone);
+        hit->position = p;
         hit->cone = s.part >= 0 ? SDV_CUT_CONE : cone;
         hit->normal = hit->inside ? lao_v3_scale(gradient, -1.0f) : gradient;
         hit->t = t;
@@ -5116,14 +5191,15 @@ SDV_API lao_v3 sdv_smooth_normal(const sdv_grid *grid, lao_v3 p, uint32_t cone, 
     }
     return sdv_joint_normal(sum, normal);
 }
-SDV_API float sdv_openness(const sdv_grid *grid, lao_v3 p, lao_v3 normal, float reach,
-                           uint32_t inside) {
+SDV_API float sdv_openness(const sdv_grid *grid, const sdv_shapes *shapes, lao_v3 p, lao_v3 normal,
+                           float reach, uint32_t inside) {
     float closed = 0.0f;
     lao_int i;
     for (i = 0; i < SDV_OPEN_SAMPLES && reach > 0.0f; i++) {
         float place = sdv_open_place(reach, i);
         lao_v3 q = lao_v3_along(p, normal, place);
         float d = sdv_grid_distance(grid, q, NULL);
+        d = shapes ? sdv__solid_of(shapes, d, q, false).distance : d;
         closed = sdv_open_add(closed, inside ? -d : d, place, i);
     }
     return sdv_open_result(closed);
@@ -5188,10 +5264,10 @@ static uint32_t sdv__spread(uint32_t v) { /* 10 bits, two free ones between */
     return (v | v << 2) & 0x09249249u;
 }
 static uint32_t sdv__morton(const sdv__piece *s, const double low[3], double size) {
-    const float *u = &s->u.x, *v = &s->v.x, *w = &s->w.x;
     uint32_t key = 0, k;
     for (k = 0; k < 3; k++) {
-        double c = ((double)u[k] + (double)v[k] + (double)w[k]) / 3 - low[k];
+        double u = (double)sdv__v3_at(s->u, k), v = (double)sdv__v3_at(s->v, k);
+        double c = (u + v + (double)sdv__v3_at(s->w, k)) / 3 - low[k];
         double cell = size > 0 ? c / size * 1023 : 0;
         key |= sdv__spread(cell > 0 ? (cell < 1023 ? (uint32_t)cell : 1023u) : 0u) << k;
     }
@@ -5442,10 +5518,9 @@ static lao_v4 sdv__channels(const sdv__level *l, size_t texel, uint32_t channels
 }
 static void sdv__channels_set(const sdv__level *l, size_t texel, uint32_t channels, uint32_t c,
                               lao_v4 value) {
-    const float *v = &value.x;
     uint32_t k;
     for (k = 0; k < 4 && c + k < channels; k++) {
-        l->values[texel * channels + c + k] = v[k];
+        l->values[texel * channels + c + k] = sdv__v4_at(value, k);
     }
 }
 static void sdv__pull_texel(const sdv__pull *p, uint32_t x, uint32_t y) {
@@ -5855,7 +5930,6 @@ static const lao_setting_row sdv__settings[] = {
 #define SDV__ROW(name, type, minimum, maximum, standard, structural, unit, choices, help) \
     {#name, LAO_SETTING_##type, minimum, maximum, standard, structural, unit, choices, help},
     SDV_SETTINGS(SDV__ROW)
-#undef SDV__ROW
 };
 
 static const lao_module sdv__module = {
@@ -5868,15 +5942,61 @@ static const lao_module sdv__module = {
 };
 // clang-format on
 
+/* ---- pull-push of a host's image */
+// clang-format off
+#define SDV__OF_HOST {"@pull_push_image", '>', 0}
+static const lao_image_row sdv__pull_push_images[] = {
+    {"pull_push_image",  LAO_FORMAT_HOST,    LAO_SIZE_VIEW, 0, 0, NULL, LAO_IMAGE_IMPORT, LAO_ENCODING_PLAIN, {0, 0, 0, 0}, {NULL, 0, 0}, {NULL, NULL, NULL, NULL}},
+    {"pull_push_result", LAO_FORMAT_HOST,    LAO_SIZE_VIEW, 0, 0, NULL, LAO_IMAGE_IMPORT, LAO_ENCODING_PLAIN, {0, 0, 0, 0}, {NULL, 0, 0}, {NULL, NULL, NULL, NULL}},
+    {"pull_push_level",  LAO_FORMAT_RGBA32F, LAO_SIZE_VIEW, 0, 0, "*",  0,                LAO_ENCODING_PLAIN, {0, 0, 0, 0}, {NULL, 0, 0}, {NULL, NULL, NULL, NULL}},
+    {"pull_push_filled", LAO_FORMAT_RGBA32F, LAO_SIZE_VIEW, 0, 0, "*",  0,                LAO_ENCODING_PLAIN, {0, 0, 0, 0}, {NULL, 0, 0}, {NULL, NULL, NULL, NULL}}
+};
+static const lao_pass_row sdv__pull_push_passes[] = {
+    {"pull_push_start", LAO_PASS_FULLSCREEN, "vessel_push", 2, LAO_STAGE_DRAW, LAO_SCOPE_FRAME, LAO_REPEAT_NONE, NULL, LAO_BLEND_NONE, LAO_DEPTH_NONE, LAO_CULL_NONE, {SDV__OF_HOST},
+     {SDV__WRITE("pull_push_level")},
+     {SDV__READ("pull_push_image"), SDV__READ("pull_push_image")}},
+    {"pull_push_mean", LAO_PASS_FULLSCREEN, "vessel_pull", SDV_PULL_MEAN, LAO_STAGE_DRAW, LAO_SCOPE_FRAME, LAO_REPEAT_LEVELS_UP, NULL, LAO_BLEND_NONE, LAO_DEPTH_NONE, LAO_CULL_NONE, {SDV__OF_HOST, {"pull", '=', SDV_PULL_MEAN}},
+     {SDV__WRITE("pull_push_level")},
+     {SDV__FINER("pull_push_level")}},
+    {"pull_push_sum", LAO_PASS_FULLSCREEN, "vessel_pull", SDV_PULL_SUM, LAO_STAGE_DRAW, LAO_SCOPE_FRAME, LAO_REPEAT_LEVELS_UP, NULL, LAO_BLEND_NONE, LAO_DEPTH_NONE, LAO_CULL_NONE, {SDV__OF_HOST, {"pull", '=', SDV_PULL_SUM}},
+     {SDV__WRITE("pull_push_level")},
+     {SDV__FINER("pull_push_level")}},
+    {"pull_push_top", LAO_PASS_FULLSCREEN, "vessel_push", 1, LAO_STAGE_DRAW, LAO_SCOPE_FRAME, LAO_REPEAT_NONE, NULL, LAO_BLEND_NONE, LAO_DEPTH_NONE, LAO_CULL_NONE, {SDV__OF_HOST},
+     {SDV__TOP("pull_push_filled")},
+     {SDV__TOP("pull_push_level"), SDV__TOP("pull_push_level")}},
+    {"pull_push_down", LAO_PASS_FULLSCREEN, "vessel_push", 0, LAO_STAGE_DRAW, LAO_SCOPE_FRAME, LAO_REPEAT_LEVELS_DOWN, NULL, LAO_BLEND_NONE, LAO_DEPTH_NONE, LAO_CULL_NONE, {SDV__OF_HOST},
+     {SDV__WRITE("pull_push_filled")},
+     {SDV__READ("pull_push_level"), SDV__COARSER("pull_push_filled")}},
+    {"pull_push_result", LAO_PASS_FULLSCREEN, "vessel_push", 2, LAO_STAGE_DRAW, LAO_SCOPE_FRAME, LAO_REPEAT_NONE, NULL, LAO_BLEND_NONE, LAO_DEPTH_NONE, LAO_CULL_NONE, {SDV__OF_HOST, {"@pull_push_result", '>', 0}},
+     {SDV__WRITE("pull_push_result")},
+     {SDV__READ("pull_push_filled"), SDV__READ("pull_push_filled")}}
+};
+static const lao_setting_row sdv__pull_push_settings[] = {
+    SDV_PULL_PUSH_SETTINGS(SDV__ROW)
+};
+#undef SDV__ROW
+static const lao_module sdv__pull_push_module = {
+    "pull_push",
+    sdv__pull_push_passes, (uint32_t)(sizeof sdv__pull_push_passes / sizeof sdv__pull_push_passes[0]),
+    sdv__pull_push_images, (uint32_t)(sizeof sdv__pull_push_images / sizeof sdv__pull_push_images[0]),
+    sdv__pull_push_settings, (uint32_t)(sizeof sdv__pull_push_settings / sizeof sdv__pull_push_settings[0]),
+    NULL, 0, NULL, 0, NULL, 0
+};
+// clang-format on
+
+SDV_API const lao_module *sdv_pull_push_module(void) {
+    return &sdv__pull_push_module;
+}
+
 SDV_API void sdv_camera_margin(const lao_camera *camera, uint32_t width, uint32_t height,
                                uint32_t margin, lao_camera *wider) {
     double x = (double)width / ((double)width + 2.0 * margin);
     double y = (double)height / ((double)height + 2.0 * margin);
-    int column;
+    size_t column;
     *wider = *camera;
-    for (column = 0; column < 4; column++) {
-        wider->projection[4 * column] = (float)(x * (double)camera->projection[4 * column]);
-        wider->projection[4 * column + 1] = (float)(y * (double)camera->projection[4 * column + 1]);
+    for (column = 0; column < 16; column += 4) {
+        wider->projection[column] = (float)(x * (double)camera->projection[column]);
+        wider->projection[column + 1] = (float)(y * (double)camera->projection[column + 1]);
     }
 }
 
@@ -5979,7 +6099,7 @@ static double sdv__blocks(const sdv_grid *g, uint32_t edge) {
     double n = 1;
     uint32_t k;
     for (k = 0; k < 3; k++) {
-        n *= (double)((g->size[k] + edge - 1) / edge);
+        n *= (double)sdv__parts(g->size[k], edge);
     }
     return n;
 }
@@ -6003,18 +6123,19 @@ static double sdv__most_cells(const sdv_grid *g, const lao_v4 *cone) {
 /* Most blocks of so many cells that list it: those whose middles are in its box with their reach
    around it. The last along an axis may be smaller, and its middle lower. */
 static double sdv__most_blocks(const sdv_grid *g, const lao_v4 *cone, uint32_t edge) {
-    const float *a = &cone[0].x, *b = &cone[1].x, *origin = &g->origin.x;
     lao_v3 last = lao_v3_make(1, 1, 1);
     double blocks = 1, size = (double)edge * (double)g->cell, reach;
     uint32_t k;
     last = lao_v3_scale(last, (float)(edge - 1));
     reach = 1.01 * (double)sdv_block_reach(sdv__grid_box(g), lao_v3_make(0, 0, 0), last).w;
     for (k = 0; k < 3; k++) {
-        double n = (double)((g->size[k] + edge - 1) / edge);
-        double low = (double)lao_min(a[k] - cone[0].w, b[k] - cone[1].w) - reach;
-        double high = (double)lao_max(a[k] + cone[0].w, b[k] + cone[1].w) + reach;
-        low = ceil((low - (double)origin[k]) / size - 0.5);
-        high = floor((high - (double)origin[k]) / size - 0.5);
+        double n = (double)sdv__parts(g->size[k], edge);
+        float a = sdv__v4_at(cone[0], k), b = sdv__v4_at(cone[1], k);
+        double origin = (double)sdv__v3_at(g->origin, k);
+        double low = (double)lao_min(a - cone[0].w, b - cone[1].w) - reach;
+        double high = (double)lao_max(a + cone[0].w, b + cone[1].w) + reach;
+        low = ceil((low - origin) / size - 0.5);
+        high = floor((high - origin) / size - 0.5);
         low = low > 0 ? low : 0;
         high = high >= n - 2 ? n - 1 : high;
         blocks *= high >= low ? high - low + 1 : 0;
@@ -6148,6 +6269,104 @@ SDV_API lao_result sdv_object_make_tree(const sdv_host *host, const sdv_tree *tr
     return result;
 }
 
+/* ---- the vessel that is nearest, however far */
+/* Cones in the order of their middles, SDV_LEAF_CONES a leaf, under balls around what is below
+   (see the shared text). */
+static void sdv__nearest_order(const lao_v4 *cones, uint32_t count, uint32_t *keys) {
+    double low[3], high[3], size = 0;
+    uint32_t i, k;
+    sdv__ball_bounds(cones, 2 * count, low, high);
+    for (k = 0; k < 3; k++) {
+        size = high[k] - low[k] > size ? high[k] - low[k] : size;
+    }
+    for (i = 0; i < count; i++) {
+        const lao_v4 *c = cones + 2 * (size_t)i;
+        lao_v3 a = lao_v3_make(c[0].x, c[0].y, c[0].z), b = lao_v3_make(c[1].x, c[1].y, c[1].z);
+        sdv__piece s;
+        s.u = a;
+        s.v = b;
+        s.w = lao_v3_along(a, lao_v3_sub(b, a), 0.5f);
+        keys[i] = sdv__morton(&s, low, size);
+    }
+    sdv__sort(keys, count, keys + count, keys + 2 * (size_t)count);
+}
+static lao_v4 sdv__nearest_ball(const lao_v4 *cones, const uint32_t *order, uint32_t first,
+                                uint32_t end) {
+    lao_v3 low = lao_v3_make(SDV_FAR, SDV_FAR, SDV_FAR), high = lao_v3_scale(low, -1.0f);
+    uint32_t i, k;
+    for (i = first; i < end; i++) {
+        for (k = 0; k < 2; k++) {
+            lao_v4 c = cones[2 * (size_t)order[i] + k];
+            sdv__box_grow(&low, &high, lao_v3_make(c.x - c.w, c.y - c.w, c.z - c.w));
+            sdv__box_grow(&low, &high, lao_v3_make(c.x + c.w, c.y + c.w, c.z + c.w));
+        }
+    }
+    return first < end ? sdv__box_ball(&low, &high) : lao_v4_make(0.0f, 0.0f, 0.0f, -SDV_FAR);
+}
+static void sdv__nearest_fill(const lao_v4 *cones, uint32_t count, const uint32_t *order,
+                              uint32_t leaves, lao_v4 *balls) {
+    uint32_t node, i, wide = leaves * SDV_LEAF_CONES; /* cones below a node */
+    balls[0] = lao_v4_make(0.0f, 0.0f, 0.0f, 0.0f);
+    for (node = 1; node < 2 * leaves; node++) {
+        uint32_t first, end;
+        wide /= node > 1 && (node & (node - 1)) == 0 ? 2u : 1u; /* the first of its level */
+        first = node * wide - leaves * SDV_LEAF_CONES;
+        end = first + wide < count ? first + wide : count;
+        balls[node] = sdv__nearest_ball(cones, order, first, end);
+    }
+    for (i = 0; i < leaves; i++) {
+        float id[SDV_LEAF_CONES];
+        uint32_t k;
+        for (k = 0; k < SDV_LEAF_CONES; k++) {
+            uint32_t at = i * SDV_LEAF_CONES + k;
+            id[k] = at < count ? (float)order[at] : -1.0f;
+        }
+        balls[2 * (size_t)leaves + i] = lao_v4_make(id[0], id[1], id[2], id[3]);
+    }
+}
+/* The buffer of the shapes, which are in object->shapes: with the hierarchy behind them where one
+   takes the colour of the nearest vessel. */
+static lao_result sdv__object_nearest(const sdv_host *host, sdv_object *object) {
+    const lao_allocator *a = &object->allocator;
+    const lao_v4 *cones = NULL;
+    uint32_t i, wanted = 0, leaves = 1, count = 0, *keys;
+    uint32_t shapes = (uint32_t)object->shapes[0].x, first = 1 + 4 * shapes;
+    lao_v4 *texels;
+    for (i = 0; i < shapes; i++) {
+        wanted |= object->shapes[4 + 4 * (size_t)i].w < 0.5f;
+    }
+    for (i = 0; i < object->desc.buffer_count; i++) {
+        if (strcmp(object->buffers[i].name, "vessel_cones") == 0) {
+            cones = (const lao_v4 *)object->buffers[i].data;
+            count = object->buffers[i].texel_count / 2;
+        }
+    }
+    if (!wanted || !cones) {
+        object->shapes[0].w = 0.0f;
+        sdv__object_buffer(object, "vessel_shapes", object->shapes, first);
+        return LAO_OK;
+    }
+    for (; leaves * SDV_LEAF_CONES < count; leaves *= 2) {
+    }
+    texels = (lao_v4 *)sdv__take(a, first + 3 * (uint64_t)leaves, sizeof *texels);
+    keys = (uint32_t *)sdv__take(a, 3 * (uint64_t)count, sizeof *keys); /* and order, other */
+    if (texels && keys) {
+        object->shapes[0].z = (float)first;
+        object->shapes[0].w = (float)leaves;
+        memcpy(texels, object->shapes, first * sizeof *texels);
+        sdv__nearest_order(cones, count, keys);
+        sdv__nearest_fill(cones, count, keys + count, leaves, texels + first);
+        sdv__give(a, object->nearest);
+        object->nearest = texels;
+        sdv__object_buffer(object, "vessel_shapes", texels, first + 3 * leaves);
+        sdv__give(a, keys);
+        return LAO_OK;
+    }
+    sdv__give(a, texels);
+    sdv__give(a, keys);
+    return sdv__fail(host, SDV_LOG_MEMORY, "the nearest of %u vessels", count);
+}
+
 /* The cones of the tree as it is now, and a new box where it has left the old one. */
 static lao_result sdv__object_renew(const sdv_host *host, const sdv_tree *tree,
                                     sdv_object *object) {
@@ -6190,16 +6409,16 @@ SDV_API lao_result sdv_object_move(const sdv_host *host, const sdv_tree *tree,
     }
     if (result == LAO_OK) {
         sdv__object_grid(object, &object->grid);
+        result = object->nearest ? sdv__object_nearest(host, object) : LAO_OK;
     }
     return result;
 }
 
 static bool sdv__shape_fits(const sdv_shape *s, uint32_t field_count) {
-    const float *v = &s->a.x, *w = &s->b.x;
     double size = (double)s->b.x * (double)s->b.y * (double)s->b.z;
-    int i;
+    uint32_t i;
     for (i = 0; i < 4; i++) {
-        if (!(fabsf(v[i]) <= 1e9f && fabsf(w[i]) <= 1e9f)) {
+        if (!(fabsf(sdv__v4_at(s->a, i)) <= 1e9f && fabsf(sdv__v4_at(s->b, i)) <= 1e9f)) {
             return false;
         }
     }
@@ -6233,7 +6452,7 @@ SDV_API lao_result sdv_object_shapes(const sdv_host *host, const sdv_shapes *sha
         lao_v4_make((float)shapes->count, sdv__united(shapes) ? 1.0f : 0.0f, 0.0f, 0.0f);
     for (i = 0; i < shapes->count; i++) {
         const sdv_shape *s = &shapes->shapes[i];
-        lao_v4 *to = object->shapes + 1 + 4 * i;
+        lao_v4 *to = object->shapes + 1 + 4 * (size_t)i;
         to[0] = s->a;
         to[1] = s->b;
         to[2] = lao_v4_make((float)s->kind, (float)s->operation, 0.0f, 0.0f);
@@ -6243,13 +6462,12 @@ SDV_API lao_result sdv_object_shapes(const sdv_host *host, const sdv_shapes *sha
             to[3] = lao_v4_make(c[0], c[1], c[2], c[0] < 0.0f ? 0.0f : 1.0f);
         }
     }
-    sdv__object_buffer(object, "vessel_shapes", object->shapes, 1 + 4 * shapes->count);
     if (shapes->field_count) {
         sdv__object_buffer(object, "vessel_fields", shapes->fields, shapes->field_count);
     } else {
         sdv__object_drop(object, "vessel_fields");
     }
-    return LAO_OK;
+    return sdv__object_nearest(host, object);
 }
 
 /* Fills the buffers of a mesh, which stand one behind the other in `memory`: three texels a vertex,
@@ -6386,6 +6604,7 @@ SDV_API lao_result sdv_object_pattern(const sdv_host *host, const float *values,
 SDV_API void sdv_object_free(sdv_object *object) {
     if (object && object->allocator.release) {
         sdv__give(&object->allocator, object->pattern);
+        sdv__give(&object->allocator, object->nearest);
         sdv__give(&object->allocator, object->memory);
         sdv_grid_free(&object->grid);
         memset(object, 0, sizeof *object);

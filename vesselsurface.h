@@ -471,7 +471,7 @@ VSF_API double vsf_segment_distance2(const float p[3], const float a[3], const f
       "keep position, normal, measure and look-up of the nearest front face as images")
 
 /* What a surface looks like; as lao_settings: zero is the default unless its bit is set. Depth
-   shadow, focus and attenuation are those of the frame's first set, which must have a surface. */
+   shadow, focus and attenuation are those of the first surface that has them on. */
 typedef struct vsf_settings {
     uint64_t set;
 #define VSF__FIELD(name, type, minimum, maximum, standard, structural, unit, choices, help)        \
@@ -748,6 +748,7 @@ LAO_FN lao_v3 vsf_unsharp(lao_v3 color, float depth, float blurred, float streng
 }
 
 /* ---- what the passes are made of */
+#define VSF_LEFT_TILES 64 /* along both sides of the picture */
 #define VSF_SHADING_ADAPTIVE 0
 #define VSF_SHADING_TRANSPARENT 1
 #define VSF_SHADING_FRESNEL 2
@@ -4277,15 +4278,19 @@ VSF_API lao_result vsf_near_exact(const vsf_host *host, const vsf_near *table, d
 #define VSF__SURFACE {"#surface_points", '>', 0}
 #define VSF__ANY {NULL, 0, 0}
 #define VSF__MESH VSF__READ("#surface_points"), VSF__READ("#surface_normals"), VSF__READ("#surface_triangles")
-#define VSF__FRONT VSF__MESH, VSF__READ("#surface_near"), VSF__READ("#surface_values"), VSF__READ("surface_measure"), VSF__READ("zbuffer"), VSF__READ("#surface_map")
+#define VSF__FRONT VSF__MESH, VSF__READ("surface_measure"), VSF__READ("surface_nearness"), VSF__READ("zbuffer"), VSF__READ("#surface_map")
 #define VSF__PLAIN(format, size) format, size, 0, 0, NULL, 0, LAO_ENCODING_PLAIN
 
 static const lao_image_row vsf__images[] = {
-    /* 1/mm, one texel per vertex */
-    {"surface_measure",  VSF__PLAIN(LAO_FORMAT_R32F, LAO_SIZE_ITEMS),   {0, 0, 0, 0}, VSF__ANY, {NULL, NULL, NULL, NULL}},
+    /* one texel per vertex: its place and measure (1/mm); its normal and nearness, x of the look-up */
+    {"surface_measure",  VSF__PLAIN(LAO_FORMAT_RGBA32F, LAO_SIZE_ITEMS), {0, 0, 0, 0}, VSF__ANY, {NULL, NULL, NULL, NULL}},
+    {"surface_nearness", VSF__PLAIN(LAO_FORMAT_RGBA32F, LAO_SIZE_ITEMS), {0, 0, 0, 0}, VSF__ANY, {NULL, NULL, NULL, NULL}},
     /* front faces, premultiplied: those composed so far, and the next one */
     {"surface_over",     VSF__PLAIN(LAO_FORMAT_RGBA16F, LAO_SIZE_FULL), {0, 0, 0, 0}, VSF__ANY, {NULL, NULL, NULL, NULL}},
     {"surface_layer",    VSF__PLAIN(LAO_FORMAT_RGBA16F, LAO_SIZE_FULL), {0, 0, 0, 0}, {"layers", '>', 0}, {NULL, NULL, NULL, NULL}},
+    /* whether the layer before has any pixel: by tiles, and all in all */
+    {"surface_tiles",    LAO_FORMAT_R32F, LAO_SIZE_FIXED, VSF_LEFT_TILES, VSF_LEFT_TILES, NULL, 0, LAO_ENCODING_PLAIN, {0, 0, 0, 0}, {"layers", '>', 0}, {NULL, NULL, NULL, NULL}},
+    {"surface_left",     LAO_FORMAT_R32F, LAO_SIZE_FIXED, 1, 1, NULL, 0, LAO_ENCODING_PLAIN, {0, 0, 0, 0}, {"layers", '>', 0}, {NULL, NULL, NULL, NULL}},
     {"surface_z",        VSF__PLAIN(LAO_FORMAT_D32F, LAO_SIZE_FULL),    {1, 0, 0, 0}, VSF__ANY, {NULL, NULL, NULL, NULL}},
     /* the nearest front faces of all sets, for the effects */
     {"surface_nearest",  VSF__PLAIN(LAO_FORMAT_D32F, LAO_SIZE_FULL),    {1, 0, 0, 0}, VSF__ANY, {NULL, NULL, NULL, NULL}},
@@ -4308,14 +4313,18 @@ static const lao_pass_row vsf__passes[] = {
     {"surface_back", LAO_PASS_DRAW_MESH, "surface_mesh", 0, LAO_STAGE_SHADE, LAO_SCOPE_PER_SET, LAO_REPEAT_NONE, NULL, LAO_BLEND_NONE, LAO_DEPTH_NEARER, LAO_CULL_FRONT, {VSF__SURFACE},
      {VSF__KEEP("shaded"), VSF__KEEP("zbuffer")}, {VSF__MESH}},
     {"surface_measure", LAO_PASS_FULLSCREEN, "surface_measure", 0, LAO_STAGE_COMPOSE, LAO_SCOPE_PER_SET, LAO_REPEAT_NONE, NULL, LAO_BLEND_NONE, LAO_DEPTH_NONE, LAO_CULL_NONE, {VSF__SURFACE},
-     {VSF__WRITE("surface_measure")}, {VSF__READ("#surface_points"), VSF__READ("#surface_normals"), VSF__READ("#surface_rings")}},
+     {VSF__WRITE("surface_measure"), VSF__WRITE("surface_nearness")}, {VSF__READ("#surface_points"), VSF__READ("#surface_normals"), VSF__READ("#surface_rings"), VSF__READ("#surface_near"), VSF__READ("#surface_values")}},
     /* the nearest front face, then peel by peel those behind it, and all of them over the scene */
     {"surface_front", LAO_PASS_DRAW_MESH, "surface_mesh", 1, LAO_STAGE_COMPOSE, LAO_SCOPE_PER_SET, LAO_REPEAT_NONE, NULL, LAO_BLEND_NONE, LAO_DEPTH_NEARER, LAO_CULL_BACK, {VSF__SURFACE},
      {VSF__CLEAR("surface_over"), VSF__CLEAR("surface_position"), VSF__CLEAR("surface_normal"), VSF__CLEAR("surface_lut"), VSF__CLEAR("surface_z")}, {VSF__FRONT}},
     {"surface_nearest", LAO_PASS_FULLSCREEN, "surface_nearest", 0, LAO_STAGE_COMPOSE, LAO_SCOPE_PER_SET, LAO_REPEAT_NONE, NULL, LAO_BLEND_NONE, LAO_DEPTH_NEARER, LAO_CULL_NONE, {VSF__SURFACE},
      {VSF__KEEP("surface_nearest")}, {VSF__READ("surface_z")}},
-    {"surface_peel", LAO_PASS_DRAW_MESH, "surface_mesh", 2, LAO_STAGE_COMPOSE, LAO_SCOPE_PER_SET, LAO_REPEAT_COUNT, "layers", LAO_BLEND_NONE, LAO_DEPTH_NEARER, LAO_CULL_BACK, {VSF__SURFACE},
-     {VSF__CLEAR("surface_layer"), {"surface_z", LAO_LEVEL_SAME, 0, LAO_PHASE_OTHER, LAO_LOAD_CLEAR}}, {VSF__FRONT, VSF__READ("surface_z")}},
+    {"surface_tiles", LAO_PASS_FULLSCREEN, "surface_left", 0, LAO_STAGE_COMPOSE, LAO_SCOPE_PER_SET, LAO_REPEAT_COUNT, "layers", LAO_BLEND_NONE, LAO_DEPTH_NONE, LAO_CULL_NONE, {VSF__SURFACE},
+     {VSF__WRITE("surface_tiles")}, {VSF__READ("surface_z")}},
+    {"surface_left", LAO_PASS_FULLSCREEN, "surface_left", 1, LAO_STAGE_COMPOSE, LAO_SCOPE_PER_SET, LAO_REPEAT_WITH_LAST, NULL, LAO_BLEND_NONE, LAO_DEPTH_NONE, LAO_CULL_NONE, {VSF__SURFACE},
+     {VSF__WRITE("surface_left")}, {VSF__READ("surface_tiles")}},
+    {"surface_peel", LAO_PASS_DRAW_MESH, "surface_mesh", 2, LAO_STAGE_COMPOSE, LAO_SCOPE_PER_SET, LAO_REPEAT_WITH_LAST, NULL, LAO_BLEND_NONE, LAO_DEPTH_NEARER, LAO_CULL_BACK, {VSF__SURFACE},
+     {VSF__CLEAR("surface_layer"), {"surface_z", LAO_LEVEL_SAME, 0, LAO_PHASE_OTHER, LAO_LOAD_CLEAR}}, {VSF__FRONT, VSF__READ("surface_z"), VSF__READ("surface_left")}},
     {"surface_under", LAO_PASS_FULLSCREEN, "surface_layers", 0, LAO_STAGE_COMPOSE, LAO_SCOPE_PER_SET, LAO_REPEAT_WITH_LAST, NULL, LAO_BLEND_NONE, LAO_DEPTH_NONE, LAO_CULL_NONE, {VSF__SURFACE},
      {VSF__OTHER("surface_over")}, {VSF__READ("surface_over"), VSF__READ("surface_layer")}},
     {"surface_over", LAO_PASS_FULLSCREEN, "surface_layers", 0, LAO_STAGE_COMPOSE, LAO_SCOPE_PER_SET, LAO_REPEAT_NONE, NULL, LAO_BLEND_NONE, LAO_DEPTH_NONE, LAO_CULL_NONE, {VSF__SURFACE},
@@ -4390,7 +4399,7 @@ VSF_API lao_result vsf_object_make(const vsf_host *host, const vsf_mesh *mesh, u
                          "distances of %u vertices need %u texels, the device has %u", n, 2 * n,
                          max_texels);
     }
-    extra = (float *)vsf__take(&a, 3 * (uint64_t)n + 4 * VSF_MAP_COLORS, sizeof *extra);
+    extra = (float *)vsf__take(&a, 3 * (uint64_t)n + 4u * VSF_MAP_COLORS, sizeof *extra);
     if (!extra) {
         vsf_buffers_free(&buffers);
         return vsf__fail(host, VSF_LOG_MEMORY, "distances of %u vertices", n);

@@ -311,13 +311,19 @@ static bool covered_count(const work *w, side *s) {
 
 /* ---- telling ------------------------------------------------------------------------------ */
 
-/* The pass that drew the lines: of its rows the plan has one. */
-static const series *lines_find(const shot *it) {
+/* What drew the lines: its rows, and those that find what is hidden. */
+static series lines_sum(const shot *it) {
+    series sum = {{0}, 0};
     for (uint32_t i = 0; i < it->pass_count; i++) {
-        if (strncmp(it->passes[i].name, "lines", 5) == 0)
-            return &it->passes[i].time;
+        const series *pass = &it->passes[i].time;
+        if (strncmp(it->passes[i].name, "lines", 5) != 0 &&
+            strncmp(it->passes[i].name, "far", 3) != 0)
+            continue;
+        for (uint32_t k = 0; k < pass->count; k++)
+            sum.values[k] += pass->values[k];
+        sum.count = pass->count;
     }
-    return NULL;
+    return sum;
 }
 
 static const series *pass_find(const shot *it, const char *name) {
@@ -360,6 +366,7 @@ static void shot_tell(const side *s, uint32_t preset, uint32_t pixels, cJSON *ou
     const shot *it = &s->shots[preset];
     pixel_cost cost = occlusion_cost(s, preset, pixels);
     double taps = floor_cost(it, "floor_taps", pixels);
+    const series lines = lines_sum(it);
     add_number(out, "first_frame_ms", it->first);
     add_series(out, "frame_ms", &it->frame);
     add_series(out, "pass_sum_ms", &it->sum);
@@ -371,7 +378,7 @@ static void shot_tell(const side *s, uint32_t preset, uint32_t pixels, cJSON *ou
         cJSON_AddNumberToObject(row, "level", it->passes[i].level);
         add_series(row, NULL, &it->passes[i].time);
     }
-    add_number(out, "lines_over_floor", quotient(lines_find(it), pass_find(it, "floor_lines")));
+    add_number(out, "lines_over_floor", quotient(&lines, pass_find(it, "floor_lines")));
     add_number(out, "occlusion_over_floor", over(cost.covered, taps));
     add_number(out, "occlusion_pass_over_floor_pass",
                quotient(pass_find(it, "occlusion"), pass_find(it, "floor_taps")));

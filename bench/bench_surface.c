@@ -205,6 +205,7 @@ static bool measure_mesh(bench_device *device, lao_context *context, const mesh_
     vsf_object object;
     vsf_mesh built;
     surface_case c;
+    memset(&built, 0, sizeof built);
     memset(&c, 0, sizeof c);
     if (!make_mesh(mesh, &built))
         return false;

@@ -112,7 +112,49 @@ static double brute_force(const sdv_tree *tree, uint32_t resolution) {
     return seconds;
 }
 
-static bool measure_field(cJSON *list, const sdv_tree *tree, uint32_t resolution) {
+static int by_value(const void *a, const void *b) {
+    double x = *(const double *)a, y = *(const double *)b;
+    return (x > y) - (x < y);
+}
+
+/* A node goes up by a hundredth of the extent and comes back: the less of both counts. */
+static bool move_node(sdv_tree *tree, uint32_t node, sdv_grid *grid, double *seconds) {
+    float by = 0.01f * grid->cell * (float)grid->size[2];
+    for (int i = 0; i < 2; i++) {
+        tree->nodes[node].z += i ? -by : by;
+        double start = now();
+        if (sdv_grid_update(NULL, tree, &node, 1, grid) != LAO_OK)
+            return bench_fail("sdv_grid_update");
+        *seconds = grid->rebuilt ? *seconds : fmin(*seconds, now() - start);
+    }
+    return true;
+}
+
+/* One node after the other, the root first: the median and the worst, on one thread. */
+static bool measure_moves(cJSON *row, sdv_tree *tree, uint32_t resolution) {
+    enum { MOVES = 200 };
+    double seconds[MOVES];
+    uint32_t step = 1 + (tree->node_count - 1) / MOVES, count = 0;
+    sdv_grid grid;
+    if (!make_grid(tree, resolution, false, &grid))
+        return false;
+    bool ok = true;
+    for (uint32_t node = 0; ok && node < tree->node_count; node += step) {
+        seconds[count] = INFINITY;
+        ok = move_node(tree, node, &grid, &seconds[count]);
+        count += isfinite(seconds[count]) ? 1 : 0; /* not those that leave the box */
+    }
+    sdv_grid_free(&grid);
+    if (!ok || !count)
+        return ok || bench_fail("all moves leave the box");
+    qsort(seconds, count, sizeof *seconds, by_value);
+    cJSON_AddNumberToObject(row, "moves", count);
+    cJSON_AddNumberToObject(row, "ms_move", 1e3 * seconds[count / 2]);
+    cJSON_AddNumberToObject(row, "ms_move_worst", 1e3 * seconds[count - 1]);
+    return true;
+}
+
+static bool measure_field(cJSON *list, sdv_tree *tree, uint32_t resolution) {
     double seconds[2] = {INFINITY, INFINITY};
     cJSON *row = cJSON_CreateObject();
     cJSON_AddItemToArray(list, row);
@@ -128,7 +170,8 @@ static bool measure_field(cJSON *list, const sdv_tree *tree, uint32_t resolution
             cJSON_AddNumberToObject(row, "resolution", resolution);
             cJSON_AddNumberToObject(row, "cells", grid.cell_count);
             cJSON_AddNumberToObject(row, "listed", grid.id_count);
-            cJSON_AddNumberToObject(row, "cell_bytes", 20 + 4.0 * grid.id_count / grid.cell_count);
+            cJSON_AddNumberToObject(row, "cell_bytes",
+                                    20.125 + 4.0 * grid.id_count / grid.cell_count);
             cJSON_AddNumberToObject(row, "segment_bytes", 40);
         }
         sdv_grid_free(&grid);
@@ -136,7 +179,7 @@ static bool measure_field(cJSON *list, const sdv_tree *tree, uint32_t resolution
     cJSON_AddNumberToObject(row, "ms_brute_1", 1e3 * brute_force(tree, resolution));
     cJSON_AddNumberToObject(row, "ms_1", 1e3 * seconds[0]);
     cJSON_AddNumberToObject(row, "ms_2", 1e3 * seconds[1]);
-    return true;
+    return measure_moves(row, tree, resolution);
 }
 
 /* ---- the module, with a floor behind its rows --------------------------------------------- */
@@ -501,25 +544,30 @@ static const char *text_of(const cJSON *row, const char *name) {
 void bench_vessel_print(const cJSON *document) {
     const cJSON *row;
     printf("field by the CPU: segments  resolution     cells    listed  bytes a cell  ms, 1 thread"
-           "  2 threads  brute force, 1 thread (of a sample)\n");
-    cJSON_ArrayForEach(row, cJSON_GetObjectItemCaseSensitive(document, "fields"))
-        printf("%26.0f %11.0f %9.0f %9.0f %13.1f %13.1f %10.1f %22.0f\n", number(row, "segments"),
-               number(row, "resolution"), number(row, "cells"), number(row, "listed"),
-               number(row, "cell_bytes"), number(row, "ms_1"), number(row, "ms_2"),
-               number(row, "ms_brute_1"));
+           "  2 threads  brute force, 1 thread (of a sample)  a node moves: median    worst\n");
+    cJSON_ArrayForEach(row, cJSON_GetObjectItemCaseSensitive(document, "fields")) {
+        printf("%26.0f %11.0f %9.0f %9.0f %13.1f %13.1f %10.1f %22.0f %38.2f %8.2f\n",
+               number(row, "segments"), number(row, "resolution"), number(row, "cells"),
+               number(row, "listed"), number(row, "cell_bytes"), number(row, "ms_1"),
+               number(row, "ms_2"), number(row, "ms_brute_1"), number(row, "ms_move"),
+               number(row, "ms_move_worst"));
+    }
     printf("a segment takes 40 bytes\n\nfield by the device, every frame: segments  resolution  "
            "backend  bytes a cell  move and upload ms  rows ms\n");
-    cJSON_ArrayForEach(row, cJSON_GetObjectItemCaseSensitive(document, "device_fields"))
+    cJSON_ArrayForEach(row, cJSON_GetObjectItemCaseSensitive(document, "device_fields")) {
         printf("%42.0f %11.0f %8s %13.1f %19.1f %8.1f%s\n", number(row, "segments"),
                number(row, "resolution"), text_of(row, "backend"), number(row, "cell_bytes"),
                number(row, "upload_ms"), number(row, "ms"),
                cJSON_IsTrue(cJSON_GetObjectItemCaseSensitive(row, "on_device")) ? "" : "  (CPU)");
+    }
     printf(
         "\nrays: segments  backend  size  near miss   hits  steps  trace ms  shade ms  floor ms  "
         "trace over floor (one ball, by its formula)\n");
-    cJSON_ArrayForEach(row, cJSON_GetObjectItemCaseSensitive(document, "rays")) printf(
-        "%14.0f %8s %5.0f %10s %6.2f %6.1f %9.1f %9.1f %9.1f %11.1f\n", number(row, "segments"),
-        text_of(row, "backend"), number(row, "size"), text_of(row, "near_miss"),
-        number(row, "hits"), number(row, "steps"), number(row, "trace_ms"), number(row, "shade_ms"),
-        number(row, "floor_ms"), number(row, "trace_over_floor"));
+    cJSON_ArrayForEach(row, cJSON_GetObjectItemCaseSensitive(document, "rays")) {
+        printf("%14.0f %8s %5.0f %10s %6.2f %6.1f %9.1f %9.1f %9.1f %11.1f\n",
+               number(row, "segments"), text_of(row, "backend"), number(row, "size"),
+               text_of(row, "near_miss"), number(row, "hits"), number(row, "steps"),
+               number(row, "trace_ms"), number(row, "shade_ms"), number(row, "floor_ms"),
+               number(row, "trace_over_floor"));
+    }
 }

@@ -4,11 +4,13 @@
 LAO_TEX(0, samplerBuffer, points)
 LAO_TEX(1, samplerBuffer, colors)
 LAO_TEX(2, samplerBuffer, order) /* of segments in time, where the lines have times */
+LAO_TEX(3, sampler2D, far) /* variant 1: farthest depth of 3 x 3 tiles of 8 x 8 pixels, from each on */
 LAO_CONSTANT(0, lao_constant_trail)
 LAO_CONSTANT(1, lao_constant_halo)
 LAO_CONSTANT(2, lao_constant_halo_function)
 LAO_CONSTANT(3, lao_constant_halo_border)
 LAO_CONSTANT(4, lao_constant_has_order)
+LAO_CONSTANT(5, lao_constant_variant) /* 1: what lies behind `far` is left out */
 
 LAO_VARYING(0, vec4, tangent_zoom)
 LAO_VARYING(1, vec4, color_depth) /* red, green, blue; view depth (mm) */
@@ -79,6 +81,25 @@ lao_v2 neighbour_of(segment_part s, segment_end end, bool at_end, lao_v3 corner)
                              at_end ? 1.0 : -1.0, join.square);
 }
 
+/* Does all of the segment lie behind what was drawn before? A corner is at most sqrt(2) half widths from its end; a halo lies
+   farther back than its line. The same for all four corners. */
+bool hidden(lao_v3 p1, lao_v3 p2) {
+    float r = 0.75 * lao_setting_width;
+    vec4 c1 = lao_project(lao_frame.projection, p1);
+    vec4 c2 = lao_project(lao_frame.projection, p2);
+    vec4 front = lao_project(lao_frame.projection, lao_v3_make(0.0, 0.0, max(p1.z, p2.z) + r));
+    vec2 size1 = lao_ball_size(p1, r, lao_frame.scale, lao_frame.depth.w) + 1.0;
+    vec2 size2 = lao_ball_size(p2, r, lao_frame.scale, lao_frame.depth.w) + 1.0;
+    vec2 at1 = (c1.xy / c1.w * 0.5 + 0.5) * lao_frame.viewport.xy;
+    vec2 at2 = (c2.xy / c2.w * 0.5 + 0.5) * lao_frame.viewport.xy;
+    vec2 last = lao_frame.viewport.xy - 1.0;
+    vec2 low = floor(min(max(min(at1 - size1, at2 - size2), vec2(0.0)), last) * 0.125);
+    vec2 high = floor(min(max(max(at1 + size1, at2 + size2), vec2(0.0)), last) * 0.125);
+    bool small = high.x - low.x < 2.5 && high.y - low.y < 2.5 && min(size1.x, size2.x) >= 1.0;
+    float behind = texelFetch(far, ivec2(low), 0).x;
+    return small && front.w > 0.0 && lao_behind(front.z / front.w, behind, lao_frame.scale.z);
+}
+
 void main() {
     segment_part s;
     int segment = int(LAO_VERTEX_INDEX >> 2u);
@@ -106,12 +127,15 @@ void main() {
     neighbours = vec4(0.0);
 #endif
 #endif
+    s.p1 = lao_transform(lao_frame.view, start.xyz);
+    s.p2 = lao_transform(lao_frame.view, end.xyz);
+    if (lao_constant_variant == 1) {
+        seen = seen && !hidden(s.p1, s.p2);
+    }
     if (!seen) {
         gl_Position = vec4(2.0, 2.0, 2.0, 1.0); /* outside, so that the quad is culled here */
         return;
     }
-    s.p1 = lao_transform(lao_frame.view, start.xyz);
-    s.p2 = lao_transform(lao_frame.view, end.xyz);
     s.own = lao_v3_sub(s.p2, s.p1);
     segment_end at = end_of(s, at_end);
     lao_line_end join = join_of(s, at, at_end);

@@ -3,17 +3,16 @@
 LAO_TEX(0, samplerBuffer, points)
 LAO_TEX(1, samplerBuffer, normals)
 LAO_TEX(2, samplerBuffer, triangles)
-LAO_TEX(3, samplerBuffer, distances) /* two per vertex: at two steps */
-LAO_TEX(4, samplerBuffer, values)
-LAO_TEX(5, sampler2D, measures)
-LAO_TEX(6, sampler2D, scene_z)
-LAO_TEX(7, samplerBuffer, map)
-LAO_TEX(8, sampler2D, layer_z)
+LAO_TEX(3, sampler2D, measures) /* 1, 2: both varyings of each vertex */
+LAO_TEX(4, sampler2D, nearnesses)
+LAO_TEX(5, sampler2D, scene_z)
+LAO_TEX(6, samplerBuffer, map)
+LAO_TEX(7, sampler2D, layer_z)
+LAO_TEX(8, sampler2D, left) /* 0: the layer before is empty */
 LAO_CONSTANT(0, lao_constant_variant)
 LAO_CONSTANT(1, lao_constant_shading)
-LAO_CONSTANT(2, lao_constant_near_source)
-LAO_CONSTANT(3, lao_constant_falloff_form)
-LAO_CONSTANT(4, lao_constant_near_colors)
+LAO_CONSTANT(2, lao_constant_falloff_form)
+LAO_CONSTANT(3, lao_constant_near_colors)
 
 LAO_VARYING(0, vec4, at_point)  /* world, mm; measure */
 LAO_VARYING(1, vec4, at_normal) /* world; x of the look-up */
@@ -24,22 +23,19 @@ void main() {
     vec4 triangle = texelFetch(triangles, corner / 3);
     int k = corner % 3;
     int vertex = int(k == 0 ? triangle.x : (k == 1 ? triangle.y : triangle.z));
-    lao_v3 p = texelFetch(points, vertex).xyz;
-    float measure = 0.0;
-    float x = 0.0;
-    if (lao_constant_variant != 0) {
-        measure = texelFetch(measures, ivec2(vertex % 2048, vertex / 2048), 0).x;
-        if (lao_constant_near_source == VSF_NEAR_VALUE) {
-            x = vsf_value_x(texelFetch(values, vertex).x, lao_setting_value_low, lao_setting_value_high);
-        } else {
-            float distance = vsf_near_mix(texelFetch(distances, 2 * vertex).x, texelFetch(distances, 2 * vertex + 1).x,
-                                          lao_setting_near_part);
-            x = vsf_near_x(distance, lao_setting_near_gamma);
-        }
+    if (lao_constant_variant == 0) {
+        at_point = vec4(texelFetch(points, vertex).xyz, 0.0);
+        at_normal = vec4(texelFetch(normals, vertex).xyz, 0.0);
+    } else {
+        ivec2 item = ivec2(vertex % 2048, vertex / 2048);
+        at_point = texelFetch(measures, item, 0);
+        at_normal = texelFetch(nearnesses, item, 0);
     }
-    at_point = vec4(p, measure);
-    at_normal = vec4(texelFetch(normals, vertex).xyz, x);
-    lao_emit(lao_project(lao_frame.projection, lao_transform(lao_frame.view, p)));
+    lao_v4 clip = lao_project(lao_frame.projection, lao_transform(lao_frame.view, at_point.xyz));
+    if (lao_constant_variant == 2 && texelFetch(left, ivec2(0), 0).x < 0.5) {
+        clip = lao_v4_make(2.0, 2.0, 2.0, 1.0); /* outside */
+    }
+    lao_emit(clip);
 }
 #endif
 

@@ -60,9 +60,14 @@ sdv_watch dip(sdv_box b, lao_v3 origin, lao_v3 direction, sdv_watch w, float t, 
 
 void land(sdv_box b, lao_v3 origin, lao_v3 direction, float start, bool inside) {
     float t = start;
+    float off = SDV_FAR;
     for (int i = 0; i <= SDV_POLISH_ROUNDS; i++) {
         lao_v3 p = lao_v3_along(origin, direction, t);
         solid_sample s = solid_at(b, p);
+        if (lao_abs(s.solid.distance) > off) {
+            break;
+        }
+        off = lao_abs(s.solid.distance);
         lao_v3 gradient;
         if (s.solid.part >= 0) {
             gradient = lao_v3_scale(sdv_shape_gradient_at(fields, sdv_shape_fetch(shapes, s.solid.part), p), s.solid.side);

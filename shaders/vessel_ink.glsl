@@ -82,7 +82,7 @@ void main() {
         float d_min = texelFetch(normal, pixel, 0).w;
         float reach = lao_constant_near_miss == SDV_NEAR_MISS_NONE ? 0.0 : 0.01 * lao_setting_void_reach * lao_frame.depth.z;
         float sheet = sdv_style_tone(-lao_v3_dot(n, direction), 0.5, 0.5, 1.0); /* half black where it is seen edge-on */
-        LAO_EXACT float left = 1.0 - sdv_void_share(d_min, reach) * (1.0 - sheet);
+        LAO_EXACT float left = 1.0 - sdv_void_share(d_min, reach, lao_max(wide_u, wide_v)) * (1.0 - sheet);
         tone = left;
         if (lao_constant_void_style == SDV_VOID_STIPPLE) {
             style = SDV_STYLE_STIPPLE;

@@ -62,6 +62,35 @@ bool has_void() {
            lao_constant_parameterization > (lao_constant_void_style == SDV_VOID_CHROMADEPTH ? 0 : 1);
 }
 
+/* The vessel nearest to p, exactly, from the hierarchy behind the shapes; `n`: one that is near. */
+float nearest_cone(lao_v3 p, sdv_near near) {
+    sdv_near n = near;
+    vec4 head = texelFetch(shapes, 0);
+    int first = int(head.z);
+    int leaves = int(head.w);
+    int node = leaves > 0 ? 1 : 0;
+    for (int i = 0; i < 1 << 24; i++) {
+        if (node == 0) {
+            break;
+        }
+        if (!sdv_ball_reaches(p, texelFetch(shapes, first + node), n.distance)) {
+            node = sdv_ball_next(node);
+        } else if (node < leaves) {
+            node = 2 * node;
+        } else {
+            vec4 ids = texelFetch(shapes, first + leaves + node);
+            for (int k = 0; k < SDV_LEAF_CONES; k++) {
+                float id = k == 0 ? ids.x : (k == 1 ? ids.y : (k == 2 ? ids.z : ids.w));
+                if (id >= 0.0) {
+                    int at = 2 * int(id);
+                    n = sdv_nearer(n, sdv_round_cone(p, texelFetch(cones, at), texelFetch(cones, at + 1)), id);
+                }
+            }
+            node = sdv_ball_next(node);
+        }
+    }
+    return n.cone;
+}
 /* Position of the surface beside an empty pixel, within a pixel of the picture. */
 vec4 neighbour(ivec2 pixel) {
     vec4 found = vec4(0.0, 0.0, 0.0, -1.0);
@@ -130,7 +159,7 @@ void main() {
         color = own.xyz;
         if (own.w < 0.5) { /* that of the nearest vessel */
             sdv_box b = sdv_box_fetch(box);
-            cone = near_at(b, p, direction).cone;
+            cone = nearest_cone(p, near_at(b, p, direction));
         }
     }
     if (lao_constant_variant == 2) {

@@ -61,9 +61,14 @@ sdv_march least(sdv_box b, lao_v3 origin, lao_v3 direction, sdv_march start) {
 /* On to the surface from a point close to it. */
 void land(sdv_box b, lao_v3 origin, lao_v3 direction, sdv_march m) {
     float t = m.t;
+    float off = SDV_FAR;
     for (int i = 0; i <= SDV_POLISH_ROUNDS; i++) {
         lao_v3 p = lao_v3_along(origin, direction, t);
         sdv_near n = near_at(b, p, direction);
+        if (lao_abs(n.distance) > off) {
+            break;
+        }
+        off = lao_abs(n.distance);
         int at = 2 * int(n.cone);
         lao_v3 gradient = sdv_round_cone_gradient(p, texelFetch(cones, at), texelFetch(cones, at + 1));
         out_position = vec4(p, n.cone);

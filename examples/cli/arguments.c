@@ -546,6 +546,15 @@ static const flag_row *find_flag(cli_command_bit command, const char *name, size
     return NULL;
 }
 
+uint32_t cli_flag_words(cli_command_bit command, const char *word, bool *of_file) {
+    const char *equals = strchr(word, '=');
+    const flag_row *row = find_flag(command, word, equals ? (size_t)(equals - word) : strlen(word));
+    *of_file = !row || row->per_file; /* the rest are settings */
+    if (word[0] != '-' || strcmp(word, "--") == 0)
+        return 0;
+    return equals || (row && row->type == FLAG_SWITCH) ? 1 : 2;
+}
+
 /* Flags of the table, then settings in the spelling of flags. */
 static const char *flag_name(const void *user, uint32_t index) {
     const parser *p = user;

@@ -137,6 +137,10 @@ typedef struct cli_options {
 bool cli_parse(cli_command_bit command, int argc, char **argv, cli_options *out);
 void cli_options_free(cli_options *options);
 
+/* How many words a flag takes, itself among them; *of_file: does it hold for one FILE? 0: the word
+ * is no flag. */
+uint32_t cli_flag_words(cli_command_bit command, const char *word, bool *of_file);
+
 /* "#rrggbb", "#rrggbbaa", "r,g,b" or "r,g,b,a" in 0..1; else false. */
 bool cli_parse_color(const char *text, double color[4]);
 

@@ -60,6 +60,21 @@ static const char vessel_about[] =
     "-2 a shape), mask.V, dmin.V (the nearest miss of the pixel's ray; 1e30: none), distance.V,\n"
     "bgposition.X .Y .Z, bgnormal.X .Y .Z, guide.X .Y, uv.U .V.\n";
 
+static const char render_about[] =
+    "What a FILE holds says how it is drawn: lines as lines, a vessel tree as lineao vessel draws "
+    "it,\n"
+    "a mesh as lineao surface does, a velocity volume by its pathlines. Several stand in one "
+    "picture:\n"
+    "what is in front hides what is behind, whatever it is. Front faces of a surface let through "
+    "what\n"
+    "is inside; of several surfaces those of a later FILE are laid over those of an earlier one.\n"
+    "--as says what a FILE of several meanings is: lines with a radius are lines unless told.\n\n"
+    "A dump holds the images of the lines first (color.R .G .B, mask.V, depth.Z ..., out.R .G .B), "
+    "then\n"
+    "in parts of their own, \"vessel\" and \"surface\", what lineao vessel and surface dump; of "
+    "several\n"
+    "FILEs of a kind the last one's.\n";
+
 static const char surface_about[] =
     "A MESH is STL, PLY, OBJ, VTP or VTK. A TREE (as lineao vessel takes it) or a velocity VOLUME\n"
     "(as lineao flow takes it) may stand in its place: the wall is the tree's surface (--grid), "
@@ -93,10 +108,13 @@ static const command_row commands[] = {
      "  lineao info flow.h5                    a volume: voxels, frames, period, speeds, mask\n",
      NULL},
     {"render", CLI_RENDER, cli_render, "[FILE [FLAG...]]... -o out.png",
-     "draw lines into a picture",
+     "draw lines, vessel trees and surfaces into one picture",
      "  lineao render -o aorta.png                                     the embedded scene\n"
      "  lineao render bundle.trk -o out.png --width 0.3 --view sagittal\n"
      "  lineao render a.trk --color '#d08040' b.tck --width 1 -o two.png   each FILE its own look\n"
+     "  lineao render tree.swc tracks.trk wall.stl -o all.png          what is in front hides the "
+     "rest\n"
+     "  lineao render centreline.vtp --as tree -o vessels.png          lines with a radius\n"
      "  lineao render bundle.trk --color fa --colormap inferno -o fa.png\n"
      "  lineao render flow.vtp --time 120 -o systole.png               trails around 120 ms\n"
      "  lineao render flow.vtp --frames 200 --period 833 -o beat.mp4   one heart beat, in ffmpeg\n"
@@ -105,7 +123,7 @@ static const command_row commands[] = {
      "them\n"
      "  lineao render --ssaa 1 --dump frame.exr --backend vk           every image as numbers\n"
      "  lineao render flow.h5 --color speed --seeds 5000 -o flow.png   traces the volume first\n",
-     NULL},
+     render_about},
     {"compare", CLI_COMPARE, cli_compare, "[FILE [FLAG...]]... [-o sheet.png] [--json]",
      "draw with OpenGL and Vulkan and count differing bits",
      "  lineao compare -o sheet.png            GL, VK and difference of every image\n"

@@ -284,7 +284,7 @@ static void take_map(cli_wall *wall) {
 
 /* ---- scene ------------------------------------------------------------------------------ */
 
-/* A set for the surface before that of the lines: effects are the first set's. */
+/* A set for the surface before that of the lines. */
 static bool add_set(cli_wall *wall) {
     cli_scene *scene = &wall->scene;
     cli_set *sets = cli_new(scene->count + 1u, sizeof *sets);

@@ -199,7 +199,7 @@ static void lay_lattice(cli_wall *wall, flow4d_volume *volume) {
     }
     for (int k = 0; k < 3; k++) {
         volume->size[k] = (uint32_t)ceil((high[k] - low[k]) / wall->thinnest) + 6;
-        volume->to_world[5 * k] = wall->thinnest;
+        volume->to_world[(size_t)5 * (size_t)k] = wall->thinnest;
         volume->to_world[4 * k + 3] = low[k] - 2.5 * wall->thinnest;
     }
 }

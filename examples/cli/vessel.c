@@ -266,7 +266,7 @@ static bool make_points(cli_tree *tree, io_lines *lines) {
     }
     for (uint32_t i = 0; i < 2 * shapes->count; i++) {
         const sdv_shape *s = &shapes->shapes[i / 2];
-        const float *a = &s->a.x, *b = &s->b.x;
+        const float a[3] = {s->a.x, s->a.y, s->a.z}, b[3] = {s->b.x, s->b.y, s->b.z};
         if (s->operation != SDV_UNION || s->kind == SDV_SHAPE_PLANE || s->kind == SDV_SHAPE_TREE)
             continue;
         for (int k = 0; k < 3; k++) {

@@ -143,14 +143,14 @@ typedef struct sampling {
 } sampling;
 
 static void find_box(sampling *s, const float low[3], const float high[3]) {
-    float longest = 0, *a = &s->shape.a.x, *b = &s->shape.b.x;
+    float longest = 0, size[3];
     for (int k = 0; k < 3; k++)
         longest = fmaxf(longest, high[k] - low[k]);
-    s->shape.a.w = fmaxf(longest / (FIELD_CELLS - 4), 1e-6f);
-    for (int k = 0; k < 3; k++) {
-        a[k] = low[k] - 2 * s->shape.a.w;
-        b[k] = ceilf((high[k] - low[k]) / s->shape.a.w) + 5;
-    }
+    float cell = fmaxf(longest / (FIELD_CELLS - 4), 1e-6f);
+    for (int k = 0; k < 3; k++)
+        size[k] = ceilf((high[k] - low[k]) / cell) + 5;
+    s->shape.a = lao_v4_make(low[0] - 2 * cell, low[1] - 2 * cell, low[2] - 2 * cell, cell);
+    s->shape.b = lao_v4_make(size[0], size[1], size[2], s->shape.b.w);
     s->shape.kind = SDV_SHAPE_FIELD;
 }
 
@@ -252,8 +252,8 @@ static void sample_tree(void *user, uint32_t z) {
 /* Appends the samples of a shape to those of all. */
 static bool add_field(cli_tree *tree, sampling *s, void (*fn)(void *user, uint32_t z)) {
     sdv_shapes *all = &s->carving->shapes;
-    const float *b = &s->shape.b.x;
-    double count = (double)b[0] * (double)b[1] * (double)b[2];
+    const lao_v4 b = s->shape.b;
+    double count = (double)b.x * (double)b.y * (double)b.z;
     size_t room = all->field_count + (size_t)count;
     float *grown = realloc(s->carving->fields, room * sizeof *grown);
     if (!grown)
@@ -261,7 +261,7 @@ static bool add_field(cli_tree *tree, sampling *s, void (*fn)(void *user, uint32
     s->carving->fields = grown;
     s->samples = grown + all->field_count;
     s->shape.b.w = (float)all->field_count;
-    tree->host.job.run(tree->host.job.user, (uint32_t)b[2], fn, s);
+    tree->host.job.run(tree->host.job.user, (uint32_t)b.z, fn, s);
     all->field_count = (uint32_t)room;
     all->fields = grown;
     return cli_go_on();
@@ -277,10 +277,12 @@ static bool mesh_field(cli_tree *tree, const char *path, io_mesh *read, sampling
         high[i % 3] = fmaxf(high[i % 3], mesh.points[i]);
     }
     if (ok) {
-        find_box(s, low, high);
-        s->target = target;
-        s->mesh = &mesh;
-        ok = add_field(tree, s, sample_mesh);
+        sampling own = *s; /* what it refers to ends here */
+        find_box(&own, low, high);
+        own.target = target;
+        own.mesh = &mesh;
+        ok = add_field(tree, &own, sample_mesh);
+        s->shape = own.shape;
     }
     sdv_target_free(target);
     free(mesh.points);
@@ -296,9 +298,11 @@ static bool tree_field(cli_tree *tree, const char *path, const io_tree *read, sa
         return cli_fail("%s: %s", path, error.text);
     memset(&grid, 0, sizeof grid);
     for (uint32_t i = 0; i < other.tree.node_count; i++) {
-        float *p = &other.tree.nodes[i].x;
-        for (int k = 0; k < 3; k++)
-            p[k] = (float)((double)p[k] + other.origin[k] - tree->vessel.origin[k]);
+        lao_v4 *p = &other.tree.nodes[i];
+        const double *from = other.origin, *to = tree->vessel.origin;
+        *p = lao_v4_make((float)((double)p->x + from[0] - to[0]),
+                         (float)((double)p->y + from[1] - to[1]),
+                         (float)((double)p->z + from[2] - to[2]), p->w);
     }
     bool ok = sdv_grid_build(&tree->host, &other.tree, NULL, &grid) == LAO_OK;
     if (ok) {
@@ -306,9 +310,11 @@ static bool tree_field(cli_tree *tree, const char *path, const io_tree *read, sa
         float high[3];
         for (int k = 0; k < 3; k++)
             high[k] = low[k] + (float)grid.size[k] * grid.cell;
-        find_box(s, low, high);
-        s->grid = &grid;
-        ok = add_field(tree, s, sample_tree);
+        sampling own = *s;
+        find_box(&own, low, high);
+        own.grid = &grid;
+        ok = add_field(tree, &own, sample_tree);
+        s->shape = own.shape;
     }
     sdv_grid_free(&grid);
     io_vessel_free(&other);
@@ -356,20 +362,18 @@ static bool parse_shape(cli_tree *tree, const char *text, sdv_shape *shape) {
     } else if (strncmp(text, "box:", 4) == 0) {
         if (!cli_numbers(text + 4, v, 6))
             return wrong_shape(text);
-        float *a = &shape->a.x, *b = &shape->b.x;
         shape->kind = SDV_SHAPE_BOX;
-        for (int k = 0; k < 3; k++) {
-            a[k] = (float)(0.5 * (v[k] + v[k + 3]) - o[k]);
-            b[k] = (float)(0.5 * fabs(v[k + 3] - v[k]));
-        }
+        shape->a =
+            lao_v4_make((float)(0.5 * (v[0] + v[3]) - o[0]), (float)(0.5 * (v[1] + v[4]) - o[1]),
+                        (float)(0.5 * (v[2] + v[5]) - o[2]), 0);
+        shape->b = lao_v4_make((float)(0.5 * fabs(v[3] - v[0])), (float)(0.5 * fabs(v[4] - v[1])),
+                               (float)(0.5 * fabs(v[5] - v[2])), 0);
     } else if (strncmp(text, "ellipsoid:", 10) == 0) {
         if (!cli_numbers(text + 10, v, 6) || !(v[3] > 0 && v[4] > 0 && v[5] > 0))
             return wrong_shape(text);
         shape->kind = SDV_SHAPE_ELLIPSOID;
-        for (int k = 0; k < 3; k++) {
-            (&shape->a.x)[k] = (float)(v[k] - o[k]);
-            (&shape->b.x)[k] = (float)v[k + 3];
-        }
+        shape->a = lao_v4_make((float)(v[0] - o[0]), (float)(v[1] - o[1]), (float)(v[2] - o[2]), 0);
+        shape->b = lao_v4_make((float)v[3], (float)v[4], (float)v[5], 0);
     } else if (strcmp(text, "tree") == 0) {
         shape->kind = SDV_SHAPE_TREE;
     } else if (strncmp(text, "plane:", 6) == 0) {
@@ -444,10 +448,9 @@ static bool marker_mesh(cli_tree *tree, const char *path) {
     shape->operation = SDV_UNION;
     carving->shapes.shapes = carving->list;
     carving->shapes.count = 1;
-    double point[3];
-    const float *low = &shape->a.x;
-    for (int k = 0; k < 3; k++)
-        point[k] = (double)low[k] + tree->vessel.origin[k];
+    const double *o = tree->vessel.origin;
+    const double point[3] = {(double)shape->a.x + o[0], (double)shape->a.y + o[1],
+                             (double)shape->a.z + o[2]};
     return marker_tree(tree, point, 1, 0);
 }
 

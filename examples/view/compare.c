@@ -8,13 +8,21 @@
 #include <stdlib.h>
 #include <string.h>
 
+enum { MOST_SETTINGS = 64 }; /* of a module */
+
+/* Copies of all settings of a set. */
+typedef struct set_copy {
+    lao_settings lines;
+    uint64_t modules[CLI_MODULES][MOST_SETTINGS / 2 + 1];
+    const void *list[CLI_MODULES]; /* of these, or NULL */
+} set_copy;
+
 typedef struct wish {
     cli_shot shot;
     compare_look look;
     char image[COMPARE_NAME];
     uint32_t level, serial;
-    lao_settings *sets;   /* owned: a copy for each set */
-    uint64_t module[128]; /* a copy of the module's settings, of which there is one struct */
+    set_copy *sets; /* owned */
 } wish;
 
 typedef struct side {
@@ -29,9 +37,7 @@ typedef struct side {
     int backend;
     float time;
     camera_pose camera;
-    lao_settings *settings;
-    uint64_t module[128];
-    const void *modules[1];
+    set_copy *sets;
 } side;
 
 struct compare {
@@ -86,14 +92,14 @@ static bool open_session(side *s, const wish *w) {
     return ok;
 }
 
-/* Those that the panel edits: of the last set that has any; the mark of a target has its own. */
-static const void *shared_settings(const cli_scene *scene) {
-    const void *found = NULL;
-    for (uint32_t i = 0; i < scene->count; i++) {
-        if (scene->sets[i].module_settings[0])
-            found = scene->sets[i].module_settings[0];
+static void copy_set(const cli_scene *scene, uint32_t set, set_copy *out) {
+    out->lines = scene->sets[set].settings;
+    for (uint32_t m = 0; m < scene->module_count; m++) {
+        const void *from = scene->sets[set].module_settings[m];
+        if (from)
+            memcpy(out->modules[m], from,
+                   sizeof(uint64_t) + scene->modules[m]->setting_count * sizeof(float));
     }
-    return found;
 }
 
 /* A struct of settings: uint64_t set; float values[]. */
@@ -104,42 +110,40 @@ static void give(void *settings, const compare_look *look) {
     *set |= (uint64_t)1 << look->setting;
 }
 
-static bool is_of_lines(const side *s, const wish *w) {
-    return s->compare->doc->settings[w->look.index].module == lao_lines_module();
-}
-
-/* The one setting that differs, to the set of lines that it belongs to; what is of the whole
- * picture to all of them. */
+/* The one setting that differs, to the set that it belongs to; what is of the whole picture to all
+ * of them. A wall and its lines (lineao surface) share theirs. */
 static void give_one(side *s, const wish *w, uint32_t set) {
     const document *doc = s->compare->doc;
-    if (w->look.index < 0 || !is_of_lines(s, w))
+    const document_settings *row = w->look.index < 0 ? NULL : &doc->settings[w->look.index];
+    if (!row)
         return;
-    bool mine = doc->settings[w->look.index].set == set;
+    for (uint32_t m = 0; m < doc->scene->module_count; m++) {
+        if (doc->scene->sets[set].module_settings[m] == row->now)
+            give(s->sets[set].modules[m], &w->look);
+    }
+    if (row->module != lao_lines_module())
+        return;
     bool whole = w->look.setting == LAO_SETTING_ID_supersampling;
     bool walls = doc->command == CLI_SURFACE && w->look.setting != LAO_SETTING_ID_occlusion;
-    if (mine || whole || (walls && set == 0))
-        give(&s->settings[set], &w->look);
+    if (row->set == set || whole || (walls && set == 0))
+        give(&s->sets[set].lines, &w->look);
 }
 
 static void take_settings(side *s, const wish *w) {
     const cli_scene *scene = s->compare->doc->scene;
-    uint32_t count = scene->count;
-    memcpy(s->settings, w->sets, count * sizeof *s->settings);
-    memcpy(s->module, w->module, sizeof s->module);
-    s->modules[0] = s->module;
-    for (uint32_t i = 0; i < count; i++) {
+    memcpy(s->sets, w->sets, scene->count * sizeof *s->sets);
+    for (uint32_t i = 0; i < scene->count; i++) {
+        set_copy *copy = &s->sets[i];
         if (w->look.preset > 0) {
-            s->settings[i].preset = (float)(w->look.preset - 1);
-            s->settings[i].set |= LAO_SET(preset);
+            copy->lines.preset = (float)(w->look.preset - 1);
+            copy->lines.set |= LAO_SET(preset);
         }
+        for (uint32_t m = 0; m < scene->module_count; m++)
+            copy->list[m] = scene->sets[i].module_settings[m] ? copy->modules[m] : NULL;
         give_one(s, w, i);
-        s->session.sets[i].settings = &s->settings[i];
-        if (scene->module_count && scene->sets[i].module_settings[0] &&
-            scene->sets[i].module_settings[0] == shared_settings(scene))
-            s->session.sets[i].module_settings = s->modules;
+        s->session.sets[i].settings = &copy->lines;
+        s->session.sets[i].module_settings = copy->list;
     }
-    if (w->look.index >= 0 && !is_of_lines(s, w))
-        give(s->module, &w->look);
 }
 
 static bool read_image(side *s, const wish *w, compare_result *out) {
@@ -228,9 +232,9 @@ compare *compare_start(const document *doc, const cli_listener *listener) {
     for (int i = 0; i < 2 && ok; i++) {
         side *s = &c->sides[i];
         s->compare = c;
-        s->settings = cli_new(doc->scene->count, sizeof *s->settings);
-        ok = s->settings && (pthread_create(&s->thread, NULL, work, s) == 0 ||
-                             cli_fail("no more threads for a comparison"));
+        s->sets = cli_new(doc->scene->count, sizeof *s->sets);
+        ok = s->sets && (pthread_create(&s->thread, NULL, work, s) == 0 ||
+                         cli_fail("no more threads for a comparison"));
         s->running = ok;
     }
     if (ok)
@@ -254,7 +258,7 @@ void compare_stop(compare *c) {
         free_result(&s->made[1]);
         free_result(&c->shown[i]);
         free(s->wish.sets);
-        free(s->settings);
+        free(s->sets);
     }
     pthread_cond_destroy(&c->wake);
     pthread_mutex_destroy(&c->lock);
@@ -279,10 +283,7 @@ void compare_ask(compare *c, const cli_shot *shot, const compare_look looks[2], 
         w->serial = c->serial;
         strncpy(w->image, image, sizeof w->image - 1);
         for (uint32_t s = 0; s < scene->count; s++)
-            w->sets[s] = scene->sets[s].settings;
-        if (scene->module_count && shared_settings(scene))
-            memcpy(w->module, shared_settings(scene),
-                   sizeof(uint64_t) + scene->modules[0]->setting_count * sizeof(float));
+            copy_set(scene, s, &w->sets[s]);
     }
     pthread_cond_broadcast(&c->wake);
     pthread_mutex_unlock(&c->lock);

@@ -2,6 +2,7 @@
 
 #include "flow.h"
 #include "io_read.h"
+#include "io_volume.h"
 #include "legends.h"
 #include "report.h"
 
@@ -30,23 +31,53 @@ static bool ends_with(const char *path, const char *ending) {
     return length >= tail && strncasecmp(path + length - tail, ending, tail) == 0;
 }
 
-/* 0: reported. */
-static unsigned kind_of(const char *path) {
+/* What is drawn of a file: a surface or a tree rather than the lines beside it. */
+typedef struct file_kind {
+    unsigned kind;    /* IO_LINES, IO_TREE, IO_MESH or KIND_VOLUME */
+    const char *told; /* what --as has to tell, or NULL */
+} file_kind;
+
+/* False: reported. */
+static bool find_kind(const char *path, file_kind *out) {
     cli_source source;
     io_contents contents;
-    for (size_t i = 0; i < sizeof formats / sizeof *formats; i++) {
+    memset(out, 0, sizeof *out);
+    for (size_t i = 0; i < sizeof formats / sizeof *formats && !out->kind; i++) {
         if (ends_with(path, formats[i].ending))
-            return formats[i].kind;
+            out->kind = formats[i].kind;
     }
     memset(&source, 0, sizeof source);
     source.path = path;
-    if (cli_count_volumes(&source, 1, 0))
-        return KIND_VOLUME;
+    if (!out->kind && cli_count_volumes(&source, 1, 0))
+        out->kind = KIND_VOLUME;
+    if (out->kind)
+        return true;
     if (!cli_read(&source, IO_ANYTHING, &contents))
-        return 0;
+        return false;
     unsigned kinds = contents.kinds;
     io_contents_free(&contents);
-    return kinds & IO_MESH ? IO_MESH : kinds & IO_TREE ? IO_TREE : IO_LINES;
+    out->kind = kinds & IO_MESH ? IO_MESH : kinds & IO_TREE ? IO_TREE : IO_LINES;
+    if (out->kind != IO_LINES && kinds & IO_LINES)
+        out->told = out->kind == IO_MESH ? "surface" : "tree";
+    return true;
+}
+
+/* Can lines light a wall? */
+static bool has_times(const char *path) {
+    cli_source source;
+    io_lines lines;
+    bool found = false;
+    memset(&source, 0, sizeof source);
+    source.path = path;
+    if (!cli_read_file(&source, &lines))
+        return false;
+    for (uint32_t i = 0; i < lines.point_attribute_count; i++) {
+        const char *name = lines.point_attributes[i].name;
+        found = found || strcmp(name, "time") == 0 || strcmp(name, "speed") == 0 ||
+                strcmp(name, "velocity") == 0;
+    }
+    io_lines_free(&lines);
+    return found;
 }
 
 /* ---- words ------------------------------------------------------------------------------- */
@@ -70,43 +101,55 @@ static bool add_word(document *doc, const char *word) {
     return true;
 }
 
-/* Files alone: a mesh takes lines along; a tree stands for itself; the rest are lines. */
-static bool guess_command(document *doc, const char *const *words, uint32_t count) {
-    unsigned all = 0;
-    bool ok = true;
-    uint32_t files = 0;
-    unsigned kinds[64] = {0};
-    for (; ok && files < count && files < 64 && words[files][0] != '-'; files++) {
-        kinds[files] = kind_of(words[files]);
-        ok = kinds[files] != 0;
-        all |= kinds[files];
-    }
-    int verb = all & IO_MESH ? 2 : all & IO_TREE ? 1 : 0;
+static void take_verb(document *doc, size_t verb) {
     doc->verb = verbs[verb].verb;
     doc->command = verbs[verb].command;
+}
+
+static bool add_file(document *doc, const char *path, const file_kind *kind) {
+    return add_word(doc, path) &&
+           (!kind->told || (add_word(doc, "--as") && add_word(doc, kind->told)));
+}
+
+enum { MOST_FILES = 64 };
+
+/* Files alone: a tree and a wall, which lines with times light, have a command of their own;
+ * whatever else there is stands in one picture. */
+static bool guess_command(document *doc, const char *const *words, uint32_t count) {
+    file_kind kinds[MOST_FILES];
+    uint32_t files = 0, lines = 0;
+    for (; files < count && files < MOST_FILES && words[files][0] != '-'; files++) {
+        if (!find_kind(words[files], &kinds[files]))
+            return false;
+        lines = kinds[files].kind == IO_LINES ? files : lines;
+    }
+    bool lit = files == 2 && kinds[lines].kind == IO_LINES && kinds[1 - lines].kind == IO_MESH &&
+               has_times(words[lines]);
+    bool tree = files == 1 && kinds[0].kind == IO_TREE;
+    bool wall = lit || (files == 1 && kinds[0].kind == IO_MESH);
+    take_verb(doc, wall ? 2 : tree ? 1 : 0);
+    bool ok = true;
     for (uint32_t i = 0; ok && i < count; i++) {
-        if (i < files && verb == 2 && kinds[i] == KIND_VOLUME)
-            ok = cli_fail("%s: is a volume, and a surface takes lines; trace it first: lineao flow",
-                          words[i]);
-        if (i < files && verb == 2 && kinds[i] == IO_LINES)
-            ok = ok && add_word(doc, "--lines");
-        ok = ok && add_word(doc, words[i]);
+        ok = !(lit && i == lines) || add_word(doc, "--lines");
+        ok = ok && (i < files && !wall && !tree ? add_file(doc, words[i], &kinds[i])
+                                                : add_word(doc, words[i]));
     }
     return ok;
 }
 
-static bool take_words(document *doc, const char *const *words, uint32_t count) {
+/* Of the words the last `added` are files that join what the others open. */
+static bool take_words(document *doc, const char *const *words, uint32_t count, uint32_t added) {
     bool ok = true;
     for (size_t i = 0; count && i < sizeof verbs / sizeof *verbs; i++) {
-        if (strcmp(words[0], verbs[i].verb) == 0) {
-            doc->verb = verbs[i].verb;
-            doc->command = verbs[i].command;
-        }
+        if (strcmp(words[0], verbs[i].verb) == 0)
+            take_verb(doc, i);
     }
     if (!doc->verb)
         return guess_command(doc, words, count);
-    for (uint32_t i = 1; ok && i < count; i++)
-        ok = add_word(doc, words[i]);
+    for (uint32_t i = 1; ok && i < count; i++) {
+        file_kind kind = {0, NULL};
+        ok = (i < count - added || find_kind(words[i], &kind)) && add_file(doc, words[i], &kind);
+    }
     return ok;
 }
 
@@ -159,20 +202,37 @@ static const char *file_name(const char *path) {
     return slash ? slash + 1 : path;
 }
 
+/* Of one set: a tree's, a wall's, or those of its lines. */
+static bool add_set_settings(document *doc, uint32_t i) {
+    const cli_set *set = &doc->scene->sets[i];
+    const char *name = file_name(set->name);
+    if (set->tree)
+        return add_settings(doc, sdv_module(), name, &set->tree->settings, i);
+    if (set->wall)
+        return add_settings(doc, vsf_module(), name, &set->wall->settings, i);
+    return add_settings(doc, lao_lines_module(), doc->scene->count > 1 ? name : "Lines",
+                        &doc->scene->sets[i].settings, i);
+}
+
 static bool list_settings(document *doc) {
     const cli_scene *scene = doc->scene;
     doc->settings = cli_new(scene->count + 2u, sizeof *doc->settings);
-    bool ok = doc->settings != NULL;
-    if (doc->command == CLI_VESSEL)
-        ok = ok && add_settings(doc, sdv_module(), "Vessels", &doc->tree.settings, 0);
-    if (doc->command == CLI_SURFACE)
-        ok = ok && add_settings(doc, vsf_module(), "Surface", &doc->wall.settings, 0);
-    bool many = doc->command == CLI_RENDER && scene->count > 1;
-    uint32_t last = doc->command == CLI_VESSEL ? scene->count - 1 : doc->wall.lit ? 1 : 0;
-    for (uint32_t i = many ? 0 : last; ok && i < (many ? scene->count : last + 1); i++)
-        ok = add_settings(doc, lao_lines_module(), many ? file_name(scene->sets[i].name) : "Lines",
-                          &scene->sets[i].settings, i);
-    return ok;
+    if (!doc->settings)
+        return false;
+    bool ok = true, lines = false;
+    if (doc->command == CLI_RENDER) {
+        for (uint32_t i = 0; ok && i < scene->count; i++) {
+            ok = add_set_settings(doc, i);
+            lines = lines || !scene->sets[i].object;
+        }
+        return ok && (lines || /* some of these are the picture's */
+                      add_settings(doc, lao_lines_module(), "Lines", &scene->sets[0].settings, 0));
+    }
+    bool tree = doc->command == CLI_VESSEL;
+    uint32_t last = tree ? scene->count - 1 : doc->wall.lit ? 1 : 0;
+    return (tree ? add_settings(doc, sdv_module(), "Vessels", &doc->tree.settings, 0)
+                 : add_settings(doc, vsf_module(), "Surface", &doc->wall.settings, 0)) &&
+           add_settings(doc, lao_lines_module(), "Lines", &scene->sets[last].settings, last);
 }
 
 void document_set(document *doc, uint32_t index, int setting, float value) {
@@ -336,31 +396,21 @@ static bool aim(document *doc) {
 }
 
 static void warn(const document *doc) {
-    const io_tree *tree = &doc->tree.contents.tree;
-    const io_mesh *mesh = &doc->wall.contents.mesh;
     char text[512];
     if (doc->command != CLI_VESSEL)
         cli_scene_warn(doc->scene);
-    for (uint32_t i = 0; i < tree->warning_count; i++)
-        cli_warn(doc->tree.name, tree->warnings[i]);
-    for (uint32_t i = 0; i < doc->tree.vessel.tree.warning_count; i++) {
-        sdv_tree_warning_text(&doc->tree.vessel.tree, i, text, sizeof text);
+    for (uint32_t i = 0; cli_tree_warning(&doc->tree, i, text, sizeof text); i++)
         cli_warn(doc->tree.name, text);
-    }
-    for (uint32_t i = 0; i < mesh->warning_count; i++)
-        cli_warn(doc->wall.name, mesh->warnings[i]);
-    for (uint32_t i = 0; i < doc->wall.mesh.warning_count; i++) {
-        vsf_mesh_warning_text(&doc->wall.mesh, i, text, sizeof text);
+    for (uint32_t i = 0; cli_wall_warning(&doc->wall, i, text, sizeof text); i++)
         cli_warn(doc->wall.name, text);
-    }
 }
 
-document *document_open(const char *const *words, uint32_t count) {
+document *document_open(const char *const *words, uint32_t count, uint32_t added) {
     document *doc = cli_new(1, sizeof *doc);
     if (!doc)
         return NULL;
     memset(doc, 0, sizeof *doc);
-    bool ok = take_words(doc, words, count) && parse(doc) && load(doc) &&
+    bool ok = take_words(doc, words, count, added) && parse(doc) && load(doc) &&
               cli_shot_make(&doc->options, doc->scene, &doc->shot) && aim(doc) &&
               list_settings(doc);
     if (!ok) {
@@ -372,6 +422,7 @@ document *document_open(const char *const *words, uint32_t count) {
     if (doc->command == CLI_VESSEL) /* as the first camera has it, from now on */
         doc->settings[0].edited |=
             doc->tree.settings.set & SDV_SET(ssp_period) & ~doc->tree.source->vessel.set;
+    doc->added = added > 0;
     warn(doc);
     return doc;
 }
@@ -395,7 +446,9 @@ void document_close(document *doc) {
 }
 
 const char *document_name(const document *doc) {
-    return file_name(doc->scene->sets[0].name);
+    return file_name(doc->options.file_count && doc->command == CLI_RENDER
+                         ? doc->options.files[0].path
+                         : doc->scene->sets[0].name);
 }
 
 bool document_surround(void *user, picture *p) {
@@ -441,81 +494,157 @@ static void put(cli_text *t, bool plain, const char *word) {
     cli_text_add(t, "'", 1);
 }
 
-static void put_settings(cli_text *t, bool plain, const document *doc, uint32_t set) {
-    for (uint32_t i = 0; i < doc->settings_count; i++) {
-        const document_settings *s = &doc->settings[i];
-        for (uint32_t k = 0; k < s->module->setting_count; k++) {
-            const lao_setting_row *row = &s->module->settings[k];
-            char value[64], word[160];
-            bool mine = s->set == set || doc->command != CLI_RENDER;
-            if (!mine || !(s->edited >> k & 1))
-                continue;
-            cli_setting_text(row, values_of(s->now)[k], value, sizeof value);
-            snprintf(word, sizeof word, "%s=%s", row->name, value);
-            put(t, plain, "--set");
-            put(t, plain, word);
-        }
+static void put_pair(cli_text *t, bool plain, const char *flag, const char *value) {
+    if (!value)
+        return;
+    put(t, plain, flag);
+    put(t, plain, value);
+}
+
+/* "--set name=value" for those of the bits. */
+static void put_bits(cli_text *t, bool plain, const document_settings *s, uint64_t bits) {
+    for (uint32_t k = 0; k < s->module->setting_count; k++) {
+        const lao_setting_row *row = &s->module->settings[k];
+        char value[64], word[160];
+        if (!(bits >> k & 1))
+            continue;
+        cli_setting_text(row, values_of(s->now)[k], value, sizeof value);
+        snprintf(word, sizeof word, "%s=%s", row->name, value);
+        put_pair(t, plain, "--set", word);
     }
 }
 
-/* The words as they are, and behind each file what was edited of its set. */
-static void put_words(cli_text *t, bool plain, const document *doc) {
-    const cli_scene *scene = doc->scene;
-    bool one = doc->command != CLI_RENDER || doc->options.file_count == 0;
+/* What was edited of the sets of a file; NULL: of all. */
+static void put_settings(cli_text *t, bool plain, const document *doc, const char *file) {
+    for (uint32_t i = 0; i < doc->settings_count; i++) {
+        const document_settings *s = &doc->settings[i];
+        if (!file || doc->scene->sets[s->set].source->path == file)
+            put_bits(t, plain, s, s->edited);
+    }
+}
+
+/* A word that names a file of `render`, behind which its flags stand. */
+static bool is_file(const document *doc, const char *word) {
+    bool found = false;
+    for (uint32_t i = 0; i < doc->options.file_count && doc->command == CLI_RENDER; i++)
+        found = found || doc->options.files[i].path == word;
+    return found;
+}
+
+/* The words as they are, and behind the flags of each file what was edited of its set. `without`:
+ * (Optional) a file that is left out, with its flags. */
+static void put_words(cli_text *t, bool plain, const document *doc, const char *without) {
+    const char *file = NULL; /* whose flags these are */
+    bool out = false, of_file;
     put(t, plain, doc->verb);
     for (uint32_t i = 0; i < doc->word_count; i++) {
-        int dropped = words_dropped(doc->words[i]);
+        const char *word = doc->words[i];
+        int dropped = words_dropped(word);
         if (dropped) {
             i += (uint32_t)dropped - 1;
             continue;
         }
-        put(t, plain, doc->words[i]);
-        for (uint32_t s = 0; s < scene->count && !one; s++) {
-            if (scene->sets[s].source->path == doc->words[i])
-                put_settings(t, plain, doc, s);
+        if (is_file(doc, word)) {
+            if (file && !out)
+                put_settings(t, plain, doc, file);
+            file = word;
+            out = without && strcmp(word, without) == 0;
         }
+        uint32_t flag = cli_flag_words(doc->command, word, &of_file);
+        for (uint32_t last = i + (flag ? flag - 1 : 0); i <= last && i < doc->word_count; i++) {
+            if (!out || (flag && !of_file))
+                put(t, plain, doc->words[i]);
+        }
+        i--;
     }
-    if (one)
-        put_settings(t, plain, doc, 0);
+    if (!out)
+        put_settings(t, plain, doc, file);
 }
 
-static char *write_command(const document *doc, const cli_shot *shot, const char *out, bool plain) {
-    cli_text t = {NULL, 0, 0, false};
+/* Settings of a tree or a wall, those that were given as well. */
+static void put_given(cli_text *t, bool plain, const document *doc, const lao_module *module) {
+    const cli_source *source = doc->scene->sets[0].source;
+    uint64_t given = module == sdv_module()   ? source->vessel.set
+                     : module == vsf_module() ? source->surface.set
+                                              : source->settings.set;
+    for (uint32_t i = 0; i < doc->settings_count; i++) {
+        if (doc->settings[i].module == module)
+            put_bits(t, plain, &doc->settings[i], doc->settings[i].edited | given);
+    }
+}
+
+/* The files of `vessel` or `surface` for `render`, which has not all of their flags. */
+static void put_files(cli_text *t, bool plain, const document *doc) {
+    const bool tree = doc->command == CLI_VESSEL && !doc->tree.mesh.vertex_count;
+    const cli_source *source = &doc->options.files[0];
+    put(t, plain, "render");
+    put(t, plain, source->path);
+    put_pair(t, plain, "--as", tree ? "tree" : "surface");
+    put_pair(t, plain, "--unit", source->unit);
+    put_pair(t, plain, "--color", tree ? source->color : doc->options.surface.value);
+    put_given(t, plain, doc, tree ? sdv_module() : vsf_module());
+    if (!doc->options.surface.lines)
+        return;
+    put(t, plain, doc->options.surface.lines);
+    put_pair(t, plain, "--as", "lines");
+    put_pair(t, plain, "--color", source->color);
+    put_given(t, plain, doc, lao_lines_module());
+}
+
+static void put_view(cli_text *t, bool plain, const document *doc, const cli_shot *shot) {
     char text[64], *camera = camera_print(&shot->camera);
-    if (!plain)
-        put(&t, plain, "lineao");
-    put_words(&t, plain, doc);
     if (doc->timed && (document_shows_time(doc) || doc->command == CLI_SURFACE)) {
-        char time[32];
-        cli_shortest(shot->time, time, sizeof time);
-        put(&t, plain, "--time");
-        put(&t, plain, time);
+        cli_shortest(shot->time, text, sizeof text);
+        put_pair(t, plain, "--time", text);
     }
-    if (doc->options.surface.focus) {
-        put(&t, plain, "--focus");
-        put(&t, plain, doc->options.surface.focus);
-    }
-    put(&t, plain, "--camera");
-    put(&t, plain, camera ? camera : "");
+    put_pair(t, plain, "--focus", doc->options.surface.focus);
+    t->broken = t->broken || !camera;
+    put_pair(t, plain, "--camera", camera);
     free(camera);
     snprintf(text, sizeof text, "%ux%u", shot->width, shot->height);
-    put(&t, plain, "--size");
-    put(&t, plain, text);
-    if (out) {
-        put(&t, plain, "-o");
-        put(&t, plain, out);
-    }
-    cli_text_add(&t, "", 1);
-    if (!t.broken && camera)
-        return t.text;
-    free(t.text);
+    put_pair(t, plain, "--size", text);
+}
+
+/* The text with its end, for free(). NULL: reported. */
+static char *end_text(cli_text *t) {
+    cli_text_add(t, "", 1);
+    if (!t->broken)
+        return t->text;
+    free(t->text);
     return NULL;
 }
 
 char *document_command(const document *doc, const cli_shot *shot, const char *out) {
-    return write_command(doc, shot, out, false);
+    cli_text t = {NULL, 0, 0, false};
+    put(&t, false, "lineao");
+    put_words(&t, false, doc, NULL);
+    put_view(&t, false, doc, shot);
+    put_pair(&t, false, "-o", out);
+    return end_text(&t);
+}
+
+char *document_without(const document *doc, const cli_shot *shot, const char *file) {
+    cli_text t = {NULL, 0, 0, false};
+    put_words(&t, true, doc, file);
+    put_view(&t, true, doc, shot);
+    return end_text(&t);
 }
 
 char *document_words(const document *doc, const cli_shot *shot) {
-    return write_command(doc, shot, NULL, true);
+    return document_without(doc, shot, NULL);
+}
+
+bool document_joins(const document *doc) {
+    const cli_options *o = &doc->options;
+    return o->file_count > 0 &&
+           (doc->command == CLI_RENDER || (o->file_count == 1 && !io_is_volume(o->files[0].path)));
+}
+
+char *document_joined(const document *doc, const cli_shot *shot) {
+    cli_text t = {NULL, 0, 0, false};
+    if (doc->command == CLI_RENDER)
+        return document_words(doc, shot);
+    put_files(&t, true, doc);
+    put_view(&t, true, doc, shot);
+    return end_text(&t);
 }

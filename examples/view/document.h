@@ -33,11 +33,13 @@ typedef struct document {
     document_settings *settings; /* owned */
     uint32_t settings_count;
     bool timed; /* has points with times */
+    bool added; /* files joined what was open before */
 } document;
 
-/* Opens what the words name: a command and its flags, or files that tell by themselves which. For
- * any thread; failures go to its listener. NULL: reported. */
-document *document_open(const char *const *words, uint32_t count);
+/* Opens what the words name: a command and its flags, or files that tell by themselves which;
+ * behind the words of `render` the last `added` may be files of any kind. For any thread; failures
+ * go to its listener. NULL: reported. */
+document *document_open(const char *const *words, uint32_t count, uint32_t added);
 void document_close(document *doc);
 
 /* A name for the title: the first file, or the scene. */
@@ -65,5 +67,12 @@ bool document_surround(void *user, picture *p);
  * alone for `words` (not quoted, one a line). For free(). NULL: reported. */
 char *document_command(const document *doc, const cli_shot *shot, const char *out);
 char *document_words(const document *doc, const cli_shot *shot);
+/* The words of `render` without a file and the flags that hold for it. */
+char *document_without(const document *doc, const cli_shot *shot, const char *file);
+/* The same as words of `render`, which further files can follow; settings, units and colours stay,
+ * what else was said to lineao vessel or surface does not. */
+char *document_joined(const document *doc, const cli_shot *shot);
+/* Can further files join it? Scenes made by code stand alone. */
+bool document_joins(const document *doc);
 
 #endif

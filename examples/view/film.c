@@ -141,7 +141,7 @@ void film_widgets(view *v) {
     bool tree = v->doc->command == CLI_VESSEL;
     ui_text_dim(tree               ? "Video: one turn around the tree, of the size above"
                 : film_possible(v) ? "Video: one run of the time, of the size above"
-                                   : "Video: nothing moves; these lines have no times");
+                                   : "Video: nothing here moves with time");
     if (!film_possible(v))
         return;
     ui_width(-1);

@@ -259,7 +259,7 @@ static void tree_buttons(view *v) {
 }
 
 void hands_buttons(view *v) {
-    if (v->picked.kind == PICKED_TREE)
+    if (v->picked.kind == PICKED_TREE && v->doc->command == CLI_VESSEL)
         tree_buttons(v);
     if (v->doc->command == CLI_SURFACE) {
         if (ui_small_button("Focus here")) {

@@ -99,13 +99,14 @@ static void forth(view *v) {
     player_step(v, 1);
 }
 static void slower(view *v) {
-    v->player.speed /= 1.5;
+    player_pace(v, 1 / 1.5);
 }
 static void faster(view *v) {
-    v->player.speed *= 1.5;
+    player_pace(v, 1.5);
 }
 static void loop(view *v) {
     v->player.loop = !v->player.loop;
+    trace(v, "loop %s", v->player.loop ? "on" : "off");
 }
 static void quit(view *v) {
     v->quit = true;
@@ -201,11 +202,13 @@ static void click(view *v) {
 }
 
 /* One ray through a tree's field takes no time; of lines and triangles there are too many. */
-static void hover(view *v) {
+void input_hover(view *v) {
     picked found;
     double from[3], to[3];
-    if (v->doc->command != CLI_VESSEL || v->doc->tree.mesh.vertex_count)
+    if (!v->pointer.fresh || v->pointer.button >= 0 || !v->open || v->doc->command != CLI_VESSEL ||
+        v->doc->tree.mesh.vertex_count)
         return;
+    v->pointer.fresh = false;
     memset(&found, 0, sizeof found);
     if (!ui_has_pointer() && is_inside(v, v->pointer.x, v->pointer.y))
         find(v, &found, from, to);
@@ -254,8 +257,7 @@ static void on_move(GLFWwindow *glfw, double x, double y) {
     to_pixels(v, &x, &y);
     p->x = x;
     p->y = y;
-    if (p->button < 0 && v->open)
-        hover(v);
+    p->fresh = true;
     if (p->button < 0 || !v->open)
         return;
     if (!p->moved && hypot(x - p->pressed_at[0], y - p->pressed_at[1]) < CLICK * ui_scale())
@@ -284,9 +286,7 @@ static void on_scroll(GLFWwindow *glfw, double x, double y) {
 /* ---- files and window -------------------------------------------------------------------- */
 
 static void on_drop(GLFWwindow *glfw, int count, const char **paths) {
-    view *v = of(glfw);
-    v->hands.reopening = false;
-    loader_start(v->loader, paths, (uint32_t)count);
+    stage_add(of(glfw), paths, (uint32_t)count);
 }
 
 static void on_resize(GLFWwindow *glfw, int width, int height) {

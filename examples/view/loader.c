@@ -76,7 +76,7 @@ struct loader {
     pthread_t thread;
     bool started;
     char **words; /* owned */
-    uint32_t count;
+    uint32_t count, added;
 };
 
 static void say(void *user, bool failure, const char *line) {
@@ -105,7 +105,7 @@ static bool interrupted(void *user) {
 static void *work(void *user) {
     loader *l = user;
     cli_listen(&l->listener);
-    document *doc = document_open((const char *const *)l->words, l->count);
+    document *doc = document_open((const char *const *)l->words, l->count, l->added);
     pthread_mutex_lock(&l->lock);
     l->done = doc;
     l->running = false;
@@ -154,6 +154,10 @@ void loader_free(loader *l) {
 }
 
 bool loader_start(loader *l, const char *const *words, uint32_t count) {
+    return loader_add(l, words, count, 0);
+}
+
+bool loader_add(loader *l, const char *const *words, uint32_t count, uint32_t added) {
     bool ok = true;
     loader_cancel(l);
     finish(l);
@@ -166,6 +170,7 @@ bool loader_start(loader *l, const char *const *words, uint32_t count) {
             l->count++;
         }
     }
+    l->added = added;
     l->cancel = false;
     l->part = 0;
     l->running = true;

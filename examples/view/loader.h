@@ -23,6 +23,8 @@ loader *loader_new(messages *m);
 void loader_free(loader *l); /* cancels, and waits */
 /* Begins to open; what was under way is cancelled first. False: reported. */
 bool loader_start(loader *l, const char *const *words, uint32_t count);
+/* The same, where the last `added` words are files that join the others (document_open). */
+bool loader_add(loader *l, const char *const *words, uint32_t count, uint32_t added);
 void loader_cancel(loader *l);
 /* Is work under way? Then what, and which part of it is done. */
 bool loader_busy(loader *l, char text[MESSAGE_SIZE], float *part);

@@ -15,9 +15,8 @@
 static const char help[] =
     "usage: run view [FILE...] [FLAG...]\n"
     "       run view render|vessel|surface [ARGUMENTS of that command of lineao]\n\n"
-    "Opens line files, velocity volumes, vessel trees and meshes (with lines in them) in a "
-    "window;\n"
-    "without a FILE an embedded scene. More files can be dropped on the window.\n\n"
+    "Opens lines, velocity volumes, vessel trees and meshes, any of them at once, in a window;\n"
+    "without a FILE an embedded scene. Files dropped on the window join what is open.\n\n"
     "Flags of its own\n"
     "  --backend gl|vk     OpenGL or Vulkan (gl)\n"
     "  --window WxH        size of the window (1280x800)\n"

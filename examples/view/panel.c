@@ -76,24 +76,34 @@ static void embedded(view *v) {
     ui_group_end();
 }
 
-static void describe(const view *v) {
+/* One of several files, but no volume that is made of several. */
+static bool can_go(const document *doc, const cli_set *set) {
+    return doc->command == CLI_RENDER && doc->options.file_count > 1 && set->source->path &&
+           set->name == set->source->path;
+}
+
+static void describe(view *v) {
     const cli_scene *scene = v->doc->scene;
     char text[512];
     for (uint32_t i = 0; i < scene->count; i++) {
         const cli_set *set = &scene->sets[i];
-        if (set->object && v->doc->command == CLI_VESSEL) {
-            const sdv_tree_info *info = &v->doc->tree.vessel.tree.info;
+        if (set->tree) {
+            const sdv_tree_info *info = &set->tree->vessel.tree.info;
             snprintf(text, sizeof text, "%s: tree of %u nodes, %u segments, %u roots", set->name,
                      info->nodes, info->segments, info->roots);
-        } else if (set->object) {
+        } else if (set->wall) {
             snprintf(text, sizeof text, "%s: surface of %u vertices, %u triangles", set->name,
-                     v->doc->wall.mesh.vertex_count, v->doc->wall.mesh.triangle_count);
+                     set->wall->mesh.vertex_count, set->wall->mesh.triangle_count);
         } else {
             snprintf(text, sizeof text, "%s: %u lines, %u points%s%s", set->name,
                      set->lines.line_count, set->lines.point_count,
                      set->value ? ", coloured by " : "", set->value ? set->value : "");
         }
         ui_text_wrapped(text);
+        ui_group((int)i);
+        if (can_go(v->doc, set) && ui_small_button("Take away"))
+            stage_remove(v, set->source->path);
+        ui_group_end();
     }
 }
 
@@ -110,8 +120,8 @@ static void scene_tab(view *v) {
     if (v->open)
         describe(v);
     ui_space();
-    ui_text_dim("Open files: drop them on the window, or type their names, with flags of lineao "
-                "render, vessel or surface.");
+    ui_text_dim("Files dropped on the window join what is open. Names typed here, with flags of "
+                "lineao render, vessel or surface, take its place.");
     ui_width(-1);
     if (ui_input("##words", v->words, sizeof v->words, "FILE... or render FILE --color fa"))
         open_line(v);
@@ -232,7 +242,7 @@ static void picture_tab(view *v) {
     ui_width(0.36f * width);
     ui_slider_int("##wide", &v->shot_size[0], 16, 8192, "%d");
     ui_same_line();
-    ui_text("x");
+    ui_label("x");
     ui_same_line();
     ui_width(0.36f * width);
     ui_slider_int("##high", &v->shot_size[1], 16, 8192, "%d");
@@ -241,6 +251,7 @@ static void picture_tab(view *v) {
         v->shot_size[0] = v->picture.width;
         v->shot_size[1] = v->picture.height;
     }
+    ui_same_line();
     if (ui_button("Save picture"))
         stage_save(v, v->shot_path, (uint32_t)v->shot_size[0], (uint32_t)v->shot_size[1]);
     ui_help("the same bits as the command line below writes");
@@ -326,7 +337,7 @@ static void left(view *v, window_rect place) {
             panel_compare(v);
             ui_tab_end();
         }
-        if (v->open && v->doc->command == CLI_VESSEL && ui_tab("Tree")) {
+        if (v->open && picked_tree(v->doc, &v->picked) && ui_tab("Tree")) {
             panel_tree(v);
             ui_tab_end();
         }
@@ -405,6 +416,7 @@ void panel_draw(view *v) {
     if (memcmp(&before, &v->picture, sizeof before) != 0)
         v->dirty = true;
     mark_picked(v);
+    input_hover(v);
     tree_marks(v);
     hands_marks(v);
     if (v->compare)

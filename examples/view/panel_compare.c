@@ -133,7 +133,7 @@ static void edit_setting(view *v) {
         ui_widget_name(side ? "right value" : "left value");
         if (ui_table("sides", 2)) {
             ui_cell();
-            ui_text(side ? "right" : "left");
+            ui_label(side ? "right" : "left");
             ui_cell();
             if (panel_edit(row, &looks[side].value)) {
                 if (row->type == LAO_SETTING_INT)

@@ -76,7 +76,7 @@ static void row_of(view *v, uint32_t index, int setting) {
         return;
     ui_group(setting);
     ui_cell();
-    ui_text(label);
+    ui_label(label);
     panel_explain(row);
     ui_cell();
     ui_widget_name(row->name);

@@ -48,9 +48,9 @@ static void draw(const ui_area *a, const cli_tree *tree) {
     }
 }
 
-/* The branch (reduced node) that a node of the tree lies on; SDV_NONE: nothing, or none. */
-static uint32_t branch_of(const view *v, const picked *p) {
-    return p->kind == PICKED_TREE ? v->doc->tree.reduced.owners[p->point] : SDV_NONE;
+/* The branch (reduced node) that a node of the tree lies on; SDV_NONE: none, or of another tree. */
+static uint32_t branch_of(const cli_tree *tree, const view *v, const picked *p) {
+    return tree && picked_on(v->doc, p) == tree ? tree->reduced.owners[p->point] : SDV_NONE;
 }
 
 /* In the flat tree: the edge of a branch, and its end. */
@@ -68,8 +68,7 @@ static void mark_flat(const ui_area *a, const cli_tree *tree, uint32_t branch, u
 }
 
 /* In the picture: the middle line of a branch. */
-static void mark_solid(const view *v, uint32_t branch, uint32_t color) {
-    const cli_tree *tree = &v->doc->tree;
+static void mark_solid(const view *v, const cli_tree *tree, uint32_t branch, uint32_t color) {
     const double *o = tree->vessel.origin;
     for (uint32_t i = 0; branch != SDV_NONE && i < tree->vessel.tree.node_count; i++) {
         uint32_t parent = tree->vessel.tree.parents[i];
@@ -85,22 +84,25 @@ static void mark_solid(const view *v, uint32_t branch, uint32_t color) {
     }
 }
 
-static bool has_branches(const view *v) {
-    return v->open && v->doc->command == CLI_VESSEL && v->doc->tree.reduced.node_count > 0;
+/* The tree that is laid out, if it has branches, or NULL. */
+static const cli_tree *shown_tree(const view *v) {
+    const cli_tree *tree = v->open ? picked_tree(v->doc, &v->picked) : NULL;
+    return tree && tree->reduced.node_count > 0 ? tree : NULL;
 }
 
 void tree_hover(view *v, const picked *at) {
-    uint32_t before = branch_of(v, &v->hovered);
+    const cli_tree *tree = shown_tree(v);
+    uint32_t before = tree ? branch_of(tree, v, &v->hovered) : SDV_NONE;
     v->hovered = *at;
-    uint32_t now = branch_of(v, at);
+    uint32_t now = tree ? branch_of(tree, v, at) : SDV_NONE;
     if (now != before && now != SDV_NONE)
-        trace(v, "hovers %u", v->doc->tree.reduced.nodes[now]);
+        trace(v, "hovers %u", tree->reduced.nodes[now]);
 }
 
 /* Beside the pointer: what it is on. */
 static void tell_hovered(const view *v) {
-    const cli_tree *tree = &v->doc->tree;
-    uint32_t node = v->hovered.point, branch = branch_of(v, &v->hovered);
+    const cli_tree *tree = picked_on(v->doc, &v->hovered);
+    uint32_t node = v->hovered.point, branch = branch_of(tree, v, &v->hovered);
     char text[96], near[48] = "";
     if (tree->distances && branch != SDV_NONE)
         snprintf(near, sizeof near, ", %.3g mm from the target", (double)tree->distances[branch]);
@@ -114,22 +116,24 @@ static void tell_hovered(const view *v) {
 }
 
 void tree_marks(const view *v) {
-    if (!has_branches(v) || v->picture.width < 1)
+    const cli_tree *tree = shown_tree(v);
+    if (!tree || v->picture.width < 1)
         return;
-    mark_solid(v, branch_of(v, &v->picked), 0xff1030f0);
-    mark_solid(v, branch_of(v, &v->hovered), 0xffffffff);
-    if (v->hovered.kind == PICKED_TREE && !v->hovered_flat && v->pointer.button < 0)
+    mark_solid(v, tree, branch_of(tree, v, &v->picked), 0xff1030f0);
+    mark_solid(v, tree, branch_of(tree, v, &v->hovered), 0xffffffff);
+    if (picked_on(v->doc, &v->hovered) && !v->hovered_flat && v->pointer.button < 0)
         tell_hovered(v);
 }
 
 void panel_tree(view *v) {
-    const cli_tree *tree = &v->doc->tree;
+    const cli_tree *tree = shown_tree(v);
     float width;
     char text[128];
     picked found;
-    hands_tree(v);
+    if (v->doc->command == CLI_VESSEL) /* which has targets and cuts */
+        hands_tree(v);
     ui_space();
-    if (!has_branches(v))
+    if (!tree)
         return;
     ui_text_dim("The branches side by side, the root above. Point at one, or click it, here or in "
                 "the picture.");
@@ -140,7 +144,7 @@ void panel_tree(view *v) {
     uint32_t over = a.hovered ? nearest(&a, tree) : SDV_NONE;
     if (over != SDV_NONE) {
         uint32_t node = tree->reduced.nodes[over];
-        pick_node(v->doc, node, &found);
+        pick_node(v->doc, tree, node, &found);
         tree_hover(v, &found);
         snprintf(text, sizeof text, "node %u", node);
         ui_help(text);
@@ -153,6 +157,6 @@ void panel_tree(view *v) {
         memset(&v->hovered, 0, sizeof v->hovered);
     }
     v->hovered_flat = over != SDV_NONE;
-    mark_flat(&a, tree, branch_of(v, &v->picked), 0xff1030f0);
-    mark_flat(&a, tree, branch_of(v, &v->hovered), 0xffffffff);
+    mark_flat(&a, tree, branch_of(tree, v, &v->picked), 0xff1030f0);
+    mark_flat(&a, tree, branch_of(tree, v, &v->hovered), 0xffffffff);
 }

@@ -68,12 +68,12 @@ static bool is_shown(const cli_set *set, const lao_settings *s, uint32_t point, 
 
 /* The nearest to the eye of those that the pointer is on; else the nearest to the pointer. */
 static void pick_lines(const document *doc, const cli_shot *shot, const pick_ray *ray,
-                       picked *out) {
+                       double *first, picked *out) {
     double best = INFINITY, t, part, found[3] = {0, 0, 0};
     for (uint32_t s = 0; s < doc->scene->count; s++) {
         const cli_set *set = &doc->scene->sets[s];
         lao_settings settings = lao_settings_filled(&set->settings);
-        for (uint32_t i = 0; i < set->lines.line_count && !set->object; i++) {
+        for (uint32_t i = 0; i < set->lines.line_count && !set->object && !set->overlay; i++) {
             uint32_t end = set->lines.offsets[i + 1];
             for (uint32_t p = set->lines.offsets[i]; p + 1 < end; p++) {
                 const float *a = set->lines.points + 3 * (size_t)p;
@@ -84,6 +84,7 @@ static void pick_lines(const document *doc, const cli_shot *shot, const pick_ray
                     !is_shown(set, &settings, p, (double)shot->time))
                     continue;
                 best = score;
+                *first = t;
                 out->kind = PICKED_LINE;
                 out->set = s;
                 out->line = i;
@@ -124,13 +125,12 @@ static void tell_line(const document *doc, picked *out) {
 
 /* ---- trees ------------------------------------------------------------------------------- */
 
-static void tell_node(const document *doc, uint32_t node, picked *out) {
-    const sdv_tree *tree = &doc->tree.vessel.tree;
-    const sdv_reduced *reduced = &doc->tree.reduced;
-    uint32_t owner = reduced->owners[node];
+static void tell_node(const cli_tree *of, uint32_t node, picked *out) {
+    const sdv_tree *tree = &of->vessel.tree;
+    uint32_t owner = of->reduced.owners[node];
     say(out, "\nnode %u, radius %.4g mm", node, (double)tree->nodes[node].w);
-    if (doc->tree.distances && owner != SDV_NONE)
-        say(out, "\n%.4g mm from the target", (double)doc->tree.distances[owner]);
+    if (of->distances && owner != SDV_NONE)
+        say(out, "\n%.4g mm from the target", (double)of->distances[owner]);
     for (uint32_t i = 0; i < tree->node_attribute_count && i < 6; i++) {
         const sdv_attribute *a = &tree->node_attributes[i];
         say(out, "\n%s: %.5g", a->name,
@@ -138,35 +138,47 @@ static void tell_node(const document *doc, uint32_t node, picked *out) {
     }
 }
 
-static void pick_tree(const document *doc, const pick_ray *ray, picked *out) {
+/* Where the ray meets a set's tree before `first`, which is moved there. */
+static void pick_tree(const document *doc, uint32_t set, const pick_ray *ray, double *first,
+                      picked *out) {
+    const cli_tree *tree = doc->scene->sets[set].tree;
     sdv_ray r;
     sdv_hit hit;
     memset(&r, 0, sizeof r);
     r.origin = lao_v3_make((float)ray->from[0], (float)ray->from[1], (float)ray->from[2]);
     r.direction = lao_v3_make((float)ray->to[0], (float)ray->to[1], (float)ray->to[2]);
-    sdv_trace_shapes(&doc->tree.grid,
-                     doc->tree.carving.shapes.count ? &doc->tree.carving.shapes : NULL, &r, &hit,
-                     NULL);
-    if (hit.cone >= doc->tree.grid.cone_count)
+    sdv_trace_shapes(&tree->grid, tree->carving.shapes.count ? &tree->carving.shapes : NULL, &r,
+                     &hit, NULL);
+    if (hit.cone >= tree->grid.cone_count)
         return;
     const double at[3] = {(double)hit.position.x, (double)hit.position.y, (double)hit.position.z};
+    double way[3];
+    for (int k = 0; k < 3; k++)
+        way[k] = at[k] - ray->from[k];
+    if (!(dot(way, ray->to) < *first))
+        return;
+    *first = dot(way, ray->to);
+    memset(out, 0, sizeof *out);
     out->kind = PICKED_TREE;
+    out->set = set;
     out->line = hit.cone;
-    out->point = doc->tree.grid.cone_nodes[2 * (size_t)hit.cone + 1];
+    out->point = tree->grid.cone_nodes[2 * (size_t)hit.cone + 1];
     place(doc, at, out);
-    say(out, "\nsegment %u", hit.cone);
-    tell_node(doc, out->point, out);
+    say(out, "\nsegment %u of %s", hit.cone, tree->name);
+    tell_node(tree, out->point, out);
 }
 
-void pick_node(const document *doc, uint32_t node, picked *out) {
-    const lao_v4 *n = &doc->tree.vessel.tree.nodes[node];
+void pick_node(const document *doc, const cli_tree *tree, uint32_t node, picked *out) {
+    const lao_v4 *n = &tree->vessel.tree.nodes[node];
     const double at[3] = {(double)n->x, (double)n->y, (double)n->z};
     memset(out, 0, sizeof *out);
     out->kind = PICKED_TREE;
-    out->line = doc->tree.vessel.tree.parent_segments[node];
+    while (out->set + 1 < doc->scene->count && doc->scene->sets[out->set].tree != tree)
+        out->set++;
+    out->line = tree->vessel.tree.parent_segments[node];
     out->point = node;
     place(doc, at, out);
-    tell_node(doc, node, out);
+    tell_node(tree, node, out);
 }
 
 /* ---- surfaces ---------------------------------------------------------------------------- */
@@ -186,9 +198,13 @@ static double to_triangle(const pick_ray *ray, const float *a, const float *b, c
     return u >= 0 && v >= 0 && u + v <= 1 && t > 0 ? t : INFINITY;
 }
 
-static void pick_surface(const document *doc, const pick_ray *ray, picked *out) {
-    const vsf_mesh *mesh = &doc->wall.mesh;
+/* The same of a set's wall; what is behind its front faces can be clicked through them. */
+static void pick_surface(const document *doc, uint32_t set, const pick_ray *ray, double *first,
+                         picked *out) {
+    const cli_wall *wall = doc->scene->sets[set].wall;
+    const vsf_mesh *mesh = &wall->mesh;
     double best = INFINITY, at[3], nearest = INFINITY;
+    uint32_t triangle = 0;
     for (uint32_t i = 0; i < mesh->triangle_count; i++) {
         const uint32_t *c = mesh->triangles + 3 * (size_t)i;
         double t =
@@ -196,16 +212,20 @@ static void pick_surface(const document *doc, const pick_ray *ray, picked *out) 
                         mesh->positions + 3 * (size_t)c[2]);
         if (t < best) {
             best = t;
-            out->line = i;
+            triangle = i;
         }
     }
-    if (!(best < INFINITY))
+    if (!(best < *first))
         return;
+    *first = best;
+    memset(out, 0, sizeof *out);
     out->kind = PICKED_SURFACE;
+    out->set = set;
+    out->line = triangle;
     for (int k = 0; k < 3; k++)
         at[k] = ray->from[k] + best * ray->to[k];
     for (int i = 0; i < 3; i++) {
-        uint32_t vertex = mesh->triangles[3 * (size_t)out->line + (uint32_t)i];
+        uint32_t vertex = mesh->triangles[3 * (size_t)triangle + (uint32_t)i];
         const float *p = mesh->positions + 3 * (size_t)vertex;
         double d[3] = {at[0] - (double)p[0], at[1] - (double)p[1], at[2] - (double)p[2]};
         if (dot(d, d) < nearest) {
@@ -214,10 +234,9 @@ static void pick_surface(const document *doc, const pick_ray *ray, picked *out) 
         }
     }
     place(doc, at, out);
-    say(out, "\ntriangle %u, vertex %u", out->line, out->point);
-    if (doc->wall.mesh.attribute_count)
-        say(out, "\n%s: %.5g", mesh->attributes[0].name,
-            (double)doc->wall.object.values[out->point]);
+    say(out, "\ntriangle %u, vertex %u of %s", out->line, out->point, wall->name);
+    if (mesh->attribute_count)
+        say(out, "\n%s: %.5g", mesh->attributes[0].name, (double)wall->object.values[out->point]);
 }
 
 /* ---- all --------------------------------------------------------------------------------- */
@@ -233,12 +252,30 @@ void pick_at(const document *doc, const cli_shot *shot, double x, double y, doub
     bool lens = shot->camera.fovy > 0;
     ray.near = lens ? 0 : near * height;
     ray.slope = lens ? near * 2 * tan(shot->camera.fovy * 3.14159265358979 / 360) : 0;
-    if (doc->command == CLI_VESSEL)
-        pick_tree(doc, &ray, out);
-    else
-        pick_lines(doc, shot, &ray, out);
-    if (doc->command == CLI_SURFACE && out->kind == PICKED_NOTHING)
-        pick_surface(doc, &ray, out);
+    double first = INFINITY;
+    pick_lines(doc, shot, &ray, &first, out);
+    for (uint32_t i = 0; i < doc->scene->count; i++) {
+        if (doc->scene->sets[i].tree)
+            pick_tree(doc, i, &ray, &first, out);
+    }
+    bool nothing = out->kind == PICKED_NOTHING;
+    for (uint32_t i = 0; i < doc->scene->count && nothing; i++) {
+        if (doc->scene->sets[i].wall)
+            pick_surface(doc, i, &ray, &first, out);
+    }
     if (out->kind == PICKED_LINE)
         tell_line(doc, out);
+}
+
+const cli_tree *picked_on(const document *doc, const picked *of) {
+    bool there = of->kind == PICKED_TREE && of->set < doc->scene->count;
+    const cli_tree *tree = there ? doc->scene->sets[of->set].tree : NULL;
+    return tree && of->point < tree->vessel.tree.node_count ? tree : NULL;
+}
+
+const cli_tree *picked_tree(const document *doc, const picked *of) {
+    const cli_tree *found = picked_on(doc, of);
+    for (uint32_t i = 0; i < doc->scene->count && !found; i++)
+        found = doc->scene->sets[i].tree;
+    return found;
 }

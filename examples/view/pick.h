@@ -19,6 +19,10 @@ typedef struct picked {
 void pick_at(const document *doc, const cli_shot *shot, double x, double y, double near,
              picked *out);
 /* A node of a tree, as if it had been clicked. */
-void pick_node(const document *doc, uint32_t node, picked *out);
+void pick_node(const document *doc, const cli_tree *tree, uint32_t node, picked *out);
+/* The tree that was picked, or NULL. */
+const cli_tree *picked_on(const document *doc, const picked *of);
+/* The same, else the first there is, or NULL. */
+const cli_tree *picked_tree(const document *doc, const picked *of);
 
 #endif

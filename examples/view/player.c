@@ -26,12 +26,18 @@ void player_go(view *v, double time) {
     stage_time(v);
 }
 
+void player_pace(view *v, double factor) {
+    v->player.speed *= factor;
+    trace(v, "speed %g", v->player.speed);
+}
+
 void player_step(view *v, int steps) {
     double first, length;
     player_range(v, &first, &length);
     double at = fmod((double)v->shot.time - first + steps * length / STEPS, length);
     v->player.playing = false;
     player_go(v, first + (at < 0 ? at + length : at));
+    trace(v, "time %g", (double)v->shot.time);
 }
 
 void player_toggle(view *v) {
@@ -46,6 +52,7 @@ void player_stop(view *v) {
     v->player.playing = false;
     player_go(v, first);
     trace(v, "player stops");
+    trace(v, "time %g", (double)v->shot.time);
 }
 
 /* While the camera turns, time stands still. */
@@ -89,6 +96,7 @@ static void draw_timeline(view *v, double first, double length) {
         float x = (a.pointer[0] - a.x) / a.width;
         player_go(v, first + length * (double)(x < 0 ? 0 : x > 1 ? 1 : x));
         v->steady.last = glfwGetTime();
+        trace(v, "time %g", (double)v->shot.time);
     }
 }
 
@@ -113,10 +121,10 @@ void player_panel(view *v, window_rect place) {
     ui_help("a step forward (Right)");
     ui_same_line();
     if (ui_button("Slower"))
-        v->player.speed /= 1.5;
+        player_pace(v, 1 / 1.5);
     ui_same_line();
     if (ui_button("Faster"))
-        v->player.speed *= 1.5;
+        player_pace(v, 1.5);
     ui_same_line();
     ui_toggle("Loop", &v->player.loop);
     if (v->doc->command == CLI_RENDER) {

@@ -74,7 +74,7 @@ bool stage_open(view *v, document *doc) {
     v->aimed = doc->shot.camera;
     find_bounds(v);
     v->dirty = true;
-    v->unfitted = !doc->options.camera;
+    v->unfitted = !doc->options.camera || doc->added;
     v->comparison.looks[0].index = v->comparison.looks[1].index = -1;
     double first, length;
     player_range(v, &first, &length);
@@ -87,18 +87,40 @@ bool stage_open(view *v, document *doc) {
     return false;
 }
 
-void stage_reload(view *v) {
-    char *words = document_words(v->doc, &v->shot);
-    const char *list[512];
-    uint32_t count = 0;
-    for (char *at = words; at && *at && count < 512; at += strcspn(at, "\n")) {
+/* Words, one a line, which are freed, and files behind them. */
+static void open_text(view *v, char *words, const char *const *files, uint32_t count) {
+    enum { MOST = 512 };
+    const char *list[MOST];
+    uint32_t said = 0, added = 0;
+    for (char *at = words; at && *at && said < MOST; at += strcspn(at, "\n")) {
         if (*at == '\n')
             *at++ = '\0';
-        list[count++] = at;
+        list[said++] = at;
+    }
+    while (said + added < MOST && added < count) {
+        list[said + added] = files[added];
+        added++;
     }
     if (words)
-        loader_start(v->loader, list, count);
+        loader_add(v->loader, list, said + added, added);
     free(words);
+}
+
+void stage_reload(view *v) {
+    open_text(v, document_words(v->doc, &v->shot), NULL, 0);
+}
+
+void stage_add(view *v, const char *const *files, uint32_t count) {
+    v->hands.reopening = false;
+    if (v->open && document_joins(v->doc))
+        open_text(v, document_joined(v->doc, &v->shot), files, count);
+    else
+        loader_start(v->loader, files, count);
+}
+
+void stage_remove(view *v, const char *file) {
+    v->hands.reopening = false;
+    open_text(v, document_without(v->doc, &v->shot, file), NULL, 0);
 }
 
 /* ---- what the host draws ----------------------------------------------------------------- */

@@ -15,6 +15,7 @@ extern "C" {
 #include <map>
 #include <string>
 #include <string.h>
+#include <vector>
 
 namespace {
 
@@ -262,6 +263,11 @@ void ui_text(const char *text) {
     ImGui::TextUnformatted(text);
 }
 
+void ui_label(const char *text) {
+    ImGui::AlignTextToFramePadding();
+    ImGui::TextUnformatted(text);
+}
+
 void ui_text_wrapped(const char *text) {
     ImGui::PushTextWrapPos(0);
     ImGui::TextUnformatted(text);
@@ -297,11 +303,28 @@ bool ui_choice(const char *label, bool chosen) {
 }
 
 bool ui_combo(const char *label, int *chosen, const char *choices) {
-    std::string items;
-    for (const char *c = choices; *c; c++)
-        items += *c == '|' ? '\0' : *c;
-    items += '\0';
-    return placed(label, ImGui::Combo(label, chosen, items.c_str()));
+    std::vector<std::string> items(1);
+    for (const char *c = choices; *c; c++) {
+        if (*c == '|')
+            items.emplace_back();
+        else
+            items.back() += *c;
+    }
+    const char *shown = *chosen >= 0 && *chosen < (int)items.size() ? items[*chosen].c_str() : "";
+    bool changed = false;
+    if (!ImGui::BeginCombo(label, shown, ImGuiComboFlags_HeightLarge))
+        return placed(label, false);
+    for (int i = 0; i < (int)items.size(); i++) {
+        bool now = ImGui::Selectable(items[i].c_str(), i == *chosen);
+        if (placed((std::string(label) + " " + items[i]).c_str(), now)) {
+            changed = i != *chosen;
+            *chosen = i;
+        }
+        if (i == *chosen && ImGui::IsWindowAppearing())
+            ImGui::SetScrollHereY();
+    }
+    ImGui::EndCombo();
+    return changed;
 }
 
 bool ui_slider(const char *label, float *value, float low, float high, const char *format) {

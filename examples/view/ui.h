@@ -62,6 +62,7 @@ void ui_group_end(void);
 /* What tests call the widgets that follow, whose own labels say little; NULL: their labels. */
 void ui_widget_name(const char *name);
 void ui_text(const char *text);
+void ui_label(const char *text); /* on the line of the widget beside it */
 void ui_text_wrapped(const char *text);
 void ui_text_dim(const char *text); /* wrapped */
 void ui_text_error(const char *text);

@@ -33,6 +33,7 @@ typedef struct pointer {
     double x, y, pressed_at[2]; /* px */
     int button;                 /* that was pressed on the picture; -1: none */
     bool moved, shift;          /* since it was pressed */
+    bool fresh;                 /* what it is on has not been looked for */
 } pointer;
 
 /* What is placed where something was picked. */
@@ -142,6 +143,9 @@ bool stage_save(view *v, const char *path, uint32_t width, uint32_t height);
 void stage_select(view *v);
 /* Opens the same document again with what was edited. */
 void stage_reload(view *v);
+/* Opens files beside what is open, where that can be; takes one of several away again. */
+void stage_add(view *v, const char *const *files, uint32_t count);
+void stage_remove(view *v, const char *file);
 /* Where a place (mm, absolute) is in the window. False: behind the eye. */
 bool stage_place(const view *v, const double at[3], float place[2]);
 /* Of the whole document: its middle (absolute) and the axis that is up. */
@@ -150,6 +154,8 @@ void stage_up(const view *v, double axis[3]);
 /* ---- input.c ---- */
 
 void input_attach(view *v);
+/* Finds what the pointer is on, in a frame of the user interface. */
+void input_hover(view *v);
 /* Draws of the keys table, for the panel. */
 uint32_t input_keys(uint32_t i, const char **key, const char **help);
 
@@ -192,6 +198,7 @@ void player_toggle(view *v);
 void player_stop(view *v);
 void player_step(view *v, int steps);
 void player_go(view *v, double time);
+void player_pace(view *v, double factor); /* faster above 1 */
 void player_panel(view *v, window_rect place);
 
 /* ---- panel.c ---- */

@@ -24,12 +24,13 @@ static const lao_shader *shader_of(const char *name) {
 }
 
 static void rows_fit_every_device(void **state) {
-    const lao_module *modules[] = {lao_lines_module(), sdv_module(), vsf_module()};
+    const lao_module *modules[] = {lao_lines_module(), sdv_module(), vsf_module(),
+                                   sdv_pull_push_module()};
     lao_graph graph;
     char text[256] = "";
     (void)state;
     assert_true(LAO_MAX_READS <= LEAST_UNITS);
-    assert_int_equal(lao_graph_make(modules, 3, NULL, &graph), LAO_OK);
+    assert_int_equal(lao_graph_make(modules, 4, NULL, &graph), LAO_OK);
     if (lao_graph_check(&graph, lao_shaders, lao_shader_count, text, sizeof text) != 0)
         fail_msg("%s", text);
     for (uint32_t i = 0; i < graph.pass_count; i++) {

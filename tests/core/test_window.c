@@ -58,7 +58,7 @@ static void keep_ranges(const lao_execution *execution, lao_plan_step step) {
 
 static lao_result keep_draws(void *self, void *view, const lao_execution *execution) {
     for (uint32_t i = 0; i < execution->plan->step_count; i++) {
-        if (execution->plan->steps[i].row->kind == LAO_PASS_DRAW_LINES)
+        if (LAO_PASS_DRAWS_LINES(execution->plan->steps[i].row->kind))
             keep_ranges(execution, execution->plan->steps[i]);
     }
     return inner.execute(self, view, execution);

@@ -663,6 +663,9 @@ void render_draw(render_device *device, const render_shot *shot, render_result *
         if (shot->objects[i])
             succeeds(device, lao_object_destroy(device->context, sets[i].object));
     }
+    if (shot->import_count)
+        surface_read(device, &brought[shot->import_count - 1], "import after",
+                     &result->import_after);
     for (uint32_t i = 0; i < shot->import_count; i++)
         surface_free(device, &brought[i]);
     if (shot->target != RENDER_NO_TARGET) {
@@ -681,6 +684,7 @@ void render_free(render_result *result) {
     free(result->target.data);
     free(result->depth_before.data);
     free(result->depth_after.data);
+    free(result->import_after.data);
     memset(result, 0, sizeof *result);
 }
 

@@ -116,6 +116,7 @@ typedef struct render_result {
     uint32_t count;
     lao_frame_uniforms frame;                       /* as the shaders saw it */
     render_image target, depth_before, depth_after; /* data NULL: none */
+    render_image import_after;                      /* the last of shot->imports */
 } render_result;
 
 /* Draws and reads everything; fails the test when something does. */

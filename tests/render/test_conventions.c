@@ -77,7 +77,8 @@ static void compare(const char *what, const render_result *usual, render_result 
     for (uint32_t i = 0; i < usual->count; i++) {
         const render_image *image = &usual->images[i];
         const render_image *same = render_find(other, image->name, image->level);
-        if ((combination & REVERSED) && strcmp(image->name, "zbuffer") == 0)
+        if ((combination & REVERSED) && (strcmp(image->name, "zbuffer") == 0 ||
+                                         strncmp(image->name, "far", 3) == 0)) /* taken from it */
             continue;
         if (combination & REVERSED)
             assert_true(render_compare(what, image, same).texels <=

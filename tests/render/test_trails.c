@@ -29,7 +29,7 @@ static lao_settings plain(int trail) {
     s.width = 64;
     s.supersampling = 1;
     s.trail = (float)trail;
-    s.set = LAO_SET(occlusion) | LAO_SET(halo);
+    s.set = LAO_SET(occlusion) | LAO_SET(halo) | LAO_SET(cull_hidden); /* one image list for all */
     return s;
 }
 

@@ -164,16 +164,37 @@ static void free_both(render_result results[2]) {
 /* ---------------------------------------------------------------------------------------------
  * per vertex, per pixel */
 
-static void check_measure(const subject *s, const render_result *result) {
-    const render_image *image = need(result, "surface_measure", 0);
+/* x of the look-up, of a vertex. */
+static float nearness_of(const scene *s, const vsf_object *object, uint32_t vertex) {
+    const float *pair = object->near_pair + 2 * (size_t)vertex;
+    vsf_settings v;
+    memset(&v, 0, sizeof v);
+    lao_settings_resolve(vsf_module(), &s->surface, &v.shading);
+    return v.near_source > 0
+               ? vsf_value_x(object->values[vertex], v.value_low, v.value_high)
+               : vsf_near_x(vsf_near_mix(pair[0], pair[1], v.near_part), v.near_gamma);
+}
+
+/* What the passes of the mesh take from each vertex: place and measure, normal and nearness. */
+static void check_vertices(const scene *shown, const subject *s, const render_result *result) {
+    const render_image *measures = need(result, "surface_measure", 0);
+    const render_image *nearnesses = need(result, "surface_nearness", 0);
     lao_v4 eye = vsf_eye(result->frame.view, result->frame.depth.w);
     const float at[4] = {eye.x, eye.y, eye.z, eye.w};
     float *measure = calloc(s->mesh.vertex_count, sizeof *measure);
     assert_non_null(measure);
     assert_int_equal(vsf_measure(NULL, &s->object.buffers, at, 0, measure), LAO_OK);
-    assert_int_equal(image->format, LAO_FORMAT_R32F);
-    assert_true((size_t)image->width * image->height >= s->mesh.vertex_count);
-    assert_memory_equal(image->data, measure, s->mesh.vertex_count * sizeof *measure);
+    assert_int_equal(measures->format, LAO_FORMAT_RGBA32F);
+    assert_true((size_t)measures->width * measures->height >= s->mesh.vertex_count);
+    for (uint32_t i = 0; i < s->mesh.vertex_count; i++) {
+        float wanted[2][4], near = nearness_of(shown, &s->object, i);
+        memcpy(wanted[0], s->object.buffers.points + 4 * (size_t)i, 12);
+        memcpy(wanted[1], s->object.buffers.normals + 4 * (size_t)i, 12);
+        wanted[0][3] = measure[i];
+        wanted[1][3] = near;
+        assert_memory_equal(measures->data + 16 * (size_t)i, wanted[0], 16);
+        assert_memory_equal(nearnesses->data + 16 * (size_t)i, wanted[1], 16);
+    }
     free(measure);
 }
 
@@ -194,6 +215,7 @@ static uint32_t check_lookup(const scene *s, const vsf_object *object,
     const render_image *lut = need(result, "surface_lut", 0);
     vsf_settings filled;
     uint32_t covered = 0;
+    memset(&filled, 0, sizeof filled);
     lao_settings_resolve(vsf_module(), &s->surface, &filled.shading);
     for (uint32_t y = 0; y < lut->height; y++) {
         for (uint32_t x = 0; x < lut->width; x++) {
@@ -244,7 +266,7 @@ static void per_vertex_and_pixel(void **state) {
         }
         draw_both(&s, results);
         for (int i = 0; i < 2; i++) {
-            check_measure(&torus, &results[i]);
+            check_vertices(&s, &torus, &results[i]);
             assert_in_range(check_lookup(&s, &torus.object, &results[i]), 2000, 4 * WIDTH * HEIGHT);
         }
         free_both(results);
@@ -625,6 +647,10 @@ static void layers(void **state) {
             }
         }
         assert_int_equal(deepest, 6);
+        if (most > 0) { /* six squares lie on each other: only the seventh layer behind is none */
+            assert_true(texel_of(need(&results[0], "surface_left", 0), 0, 0).x ==
+                        (most > 6 ? 0.0f : 1.0f));
+        }
         assert_in_range(checked, 15000, 4 * WIDTH * HEIGHT);
         assert_true(worst < 0.002); /* half floats, once a layer */
         free_both(results);

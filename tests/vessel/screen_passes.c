@@ -547,7 +547,8 @@ static lao_v4 ink(const screen *s, uint32_t k, lao_v4 hit, lao_v4 normal, const 
         float reach = v[SDV_SETTING_ID_near_miss] > 1.5f
                           ? 0
                           : 0.01f * v[SDV_SETTING_ID_void_reach] * s->frame.depth.z;
-        tone = 1 - sdv_void_share(normal.w, reach) * (1 - sdv_style_tone(facing, 0.5f, 0.5f, 1));
+        tone = 1 - sdv_void_share(normal.w, reach, lao_max(wide_u, wide_v)) *
+                       (1 - sdv_style_tone(facing, 0.5f, 0.5f, 1));
         style = void_style == SDV_VOID_STIPPLE ? SDV_STYLE_STIPPLE
                 : void_style == SDV_VOID_HATCH ? SDV_STYLE_HATCH
                                                : SDV_STYLE_PLAIN;

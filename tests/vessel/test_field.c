@@ -367,11 +367,11 @@ static void light_and_openness(void **state) {
     assert_true(before > 0.9);
     assert_true(sdv_shadow(&g, NULL, v3(0, 0, 13), up, 8, 0.1f) ==
                 1.0f); /* on top: nothing above */
-    float open = sdv_openness(&g, v3(20, 0, 5), up, 4, 0),
-          below = sdv_openness(&g, v3(0, 0, 5), up, 8, 0);
+    float open = sdv_openness(&g, NULL, v3(20, 0, 5), up, 4, 0),
+          below = sdv_openness(&g, NULL, v3(0, 0, 5), up, 8, 0);
     assert_true(open > 0.99f && below < 0.9f && below > 0.1f);
-    assert_true(sdv_openness(&g, v3(0, 0, 0), up, 4, 0) == 0.0f); /* inside */
-    assert_true(sdv_openness(&g, v3(0, 0, 5), up, 0, 0) == 1.0f);
+    assert_true(sdv_openness(&g, NULL, v3(0, 0, 0), up, 4, 0) == 0.0f); /* inside */
+    assert_true(sdv_openness(&g, NULL, v3(0, 0, 5), up, 0, 0) == 1.0f);
     sdv_grid_free(&g);
     sdv_tree_free(&t);
 }

@@ -1,6 +1,7 @@
 /* What a tree brings to the module: blocks and regions list every cone that one of their cells
    lists, the images have room for all lists, a device that is too small has the CPU build the same
-   grid, moves keep room and box, what cannot be is refused and nothing leaks. */
+   grid, moves keep room and box, the vessel nearest to any place is found by a look at few, what
+   cannot be is refused and nothing leaks. */
 #include "vessel_host.h"
 
 #include <setjmp.h>
@@ -208,6 +209,74 @@ static void moves_keep_room(void **state) {
     sdv_tree_free(&t);
 }
 
+/* As vessel_shade goes through it, but with nothing to begin with. */
+static uint32_t nearest_of(const sdv_object *object, lao_v3 p, uint32_t *visits) {
+    const lao_v4 *texels = (const lao_v4 *)buffer_of(object, "vessel_shapes")->data;
+    const lao_v4 *cones = (const lao_v4 *)buffer_of(object, "vessel_cones")->data;
+    const lao_v4 *balls = texels + (size_t)texels[0].z;
+    lao_int leaves = (lao_int)texels[0].w, node = leaves > 0;
+    sdv_near n = {SDV_FAR, 0, -1};
+    for (; node != 0; (*visits)++) {
+        if (!sdv_ball_reaches(p, balls[node], n.distance)) {
+            node = sdv_ball_next(node);
+        } else if (node < leaves) {
+            node = 2 * node;
+        } else {
+            const lao_v4 *v = balls + leaves + node;
+            const float ids[SDV_LEAF_CONES] = {v->x, v->y, v->z, v->w};
+            for (int k = 0; k < SDV_LEAF_CONES && ids[k] >= 0; k++) {
+                const lao_v4 *ends = cones + 2 * (size_t)ids[k];
+                n = sdv_nearer(n, sdv_round_cone(p, ends[0], ends[1]), ids[k]);
+            }
+            node = sdv_ball_next(node);
+        }
+    }
+    return (uint32_t)n.cone;
+}
+static void check_nearest(const sdv_object *object, const sdv_grid *grid, uint32_t most) {
+    uint32_t seed = 8, visits = 0;
+    for (int i = 0; i < 400; i++) {
+        uint32_t cone;
+        lao_v3 p = vessel_point(&seed, i % 2 ? 60 : 400);
+        sdv_cones_distance(grid->cones, grid->cone_count, p, &cone);
+        assert_int_equal(nearest_of(object, p, &visits), cone);
+    }
+    assert_true(visits < 400 * most);
+}
+/* By brute force, of one cone and of many, before and after moves; only where a colour asks. */
+static void the_nearest_of_all(void **state) {
+    const float colors[6] = {0.5f, 0.5f, 0.5f, -1, 0, 0};
+    const uint32_t counts[] = {2, 5, 6, 2000};
+    const sdv_shape list[2] = {{{0, 0, 0, 5}, {0, 0, 0, 0}, SDV_SHAPE_BALL, SDV_UNION},
+                               {{9, 0, 0, 5}, {0, 0, 0, 0}, SDV_SHAPE_BALL, SDV_UNION}};
+    const sdv_shapes shapes = {list, 2, NULL, 0};
+    (void)state;
+    for (uint32_t i = 0; i < 4; i++) {
+        sdv_tree t = tree_of(i + 3, counts[i], 100, 3, 0);
+        const sdv_grid_desc cells = {32, NULL, 0, {0, 0, 0}};
+        vessel_host host;
+        sdv_host h = vessel_host_make(&host);
+        sdv_object object;
+        assert_int_equal(sdv_object_make_tree(&h, &t, &cells, IMAGE_SIZE, NULL, &object), LAO_OK);
+        assert_int_equal(sdv_object_shapes(&h, &shapes, NULL, &object), LAO_OK);
+        assert_int_equal(buffer_of(&object, "vessel_shapes")->texel_count, 9);
+        for (uint32_t n = 1; n <= 2; n++) {
+            host.fail_at = host.takes + n;
+            assert_int_equal(sdv_object_shapes(&h, &shapes, colors, &object),
+                             LAO_ERROR_OUT_OF_MEMORY);
+        }
+        assert_int_equal(sdv_object_shapes(&h, &shapes, colors, &object), LAO_OK);
+        check_nearest(&object, &object.grid, i == 3 ? 400 : 20);
+        uint32_t node = counts[i] / 2;
+        t.nodes[node].x *= -0.5f;
+        assert_int_equal(sdv_object_move(&h, &t, &node, 1, &object), LAO_OK);
+        check_nearest(&object, &object.grid, i == 3 ? 400 : 20);
+        sdv_object_free(&object);
+        assert_int_equal(host.bytes, 0);
+        sdv_tree_free(&t);
+    }
+}
+
 static void what_cannot_be_is_refused(void **state) {
     sdv_tree t = tree_of(5, 30, 50, 2, 0), other = tree_of(5, 31, 50, 2, 0);
     vessel_host host;
@@ -271,6 +340,7 @@ int main(void) {
         cmocka_unit_test(room_for_all_lists),
         cmocka_unit_test(the_cpu_builds_what_the_device_cannot),
         cmocka_unit_test(moves_keep_room),
+        cmocka_unit_test(the_nearest_of_all),
         cmocka_unit_test(what_cannot_be_is_refused),
         cmocka_unit_test(memory_may_end),
     };

@@ -585,16 +585,19 @@ static void patterns(void **state) {
 static void void_reach(void **state) {
     float last = 1;
     (void)state;
-    assert_true(sdv_void_share(0, 10) == 1 && sdv_void_share(-3, 10) == 1);
-    assert_true(sdv_void_share(10, 10) == 0 && sdv_void_share(SDV_FAR, 10) == 0);
-    assert_near(sdv_void_share(5, 10), 0.5, 1e-6);
+    assert_true(sdv_void_share(0, 10, 0) == 1 && sdv_void_share(-3, 10, 0) == 1);
+    assert_true(sdv_void_share(10, 10, 0) == 0 && sdv_void_share(SDV_FAR, 10, 0) == 0);
+    assert_near(sdv_void_share(5, 10, 0), 0.5, 1e-6);
     for (int i = 1; i <= 100; i++) {
-        float share = sdv_void_share((float)i, 100);
+        float share = sdv_void_share((float)i, 100, 0);
         assert_true(share < last && last - share < 0.0151f);
         last = share;
     }
-    assert_true(sdv_void_share(0, 0) == 1 && sdv_void_share(SDV_FAR, 0) == 1); /* no end */
+    assert_true(sdv_void_share(0, 0, 0) == 1 && sdv_void_share(SDV_FAR, 0, 0) == 1); /* no end */
     assert_near(sdv_near_miss_reach(1, 2, 3, 4, 5, 200), 10, 1e-5);
+    /* strokes of less than 7 pixels pale, those of less than 3 are not drawn */
+    assert_true(sdv_void_share(0, 10, 0.15f) == 1 && sdv_void_share(0, 0, 0.3f) == 0);
+    assert_near(sdv_void_share(0, 10, 0.225f), 0.5, 1e-6);
     assert_true(sdv_near_miss_reach(1, 20, 3, 4, 5, 200) == 20);
 }
 
@@ -602,7 +605,8 @@ static void void_reach(void **state) {
 static void drawn_depths(void **state) {
     (void)state;
     for (int kind = 0; kind < 4; kind++) {
-        const double n = 2, f = 300, reverse = kind % 2;
+        const double n = 2, f = 300;
+        const bool reverse = kind % 2 == 1;
         lao_m4 p;
         memset(&p, 0, sizeof p);
         if (kind < 2) { /* perspective */

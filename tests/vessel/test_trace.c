@@ -126,33 +126,10 @@ static void near_misses_before_a_hit(void **state) {
 }
 
 /* ---- brute force in double */
-static double cone_distance(const lao_v4 *cone, const double p[3]) {
-    double a[3], b[3], q[3], s2 = 0, qa = 0, qq = 0, qb = 0;
-    double ra = (double)cone[0].w, rb = (double)cone[1].w, d = ra - rb;
-    const float *fa = &cone[0].x, *fb = &cone[1].x;
-    for (int k = 0; k < 3; k++) {
-        a[k] = (double)fa[k];
-        b[k] = (double)fb[k] - a[k];
-        q[k] = p[k] - a[k];
-        s2 += b[k] * b[k];
-        qa += q[k] * b[k];
-        qq += q[k] * q[k];
-        qb += (q[k] - b[k]) * (q[k] - b[k]);
-    }
-    double s = sqrt(s2);
-    if (s <= fabs(d) + 1e-6 * fmax(ra, rb))
-        return d < 0 ? sqrt(qb) - rb : sqrt(qq) - ra;
-    double x = qa / s, y = sqrt(fmax(qq - x * x, 0)), t = x - y * d / sqrt(s2 - d * d);
-    if (t < 0)
-        return sqrt(qq) - ra;
-    if (t > s)
-        return sqrt(qb) - rb;
-    return (d * x + sqrt(s2 - d * d) * y) / s - ra;
-}
 static double union_distance(const sdv_grid *g, const double p[3], uint32_t *cone) {
     double least = 1e300;
     for (uint32_t k = 0; k < g->cone_count; k++) {
-        double d = cone_distance(g->cones + 2 * k, p);
+        double d = vessel_cone_distance(g->cones + 2 * k, p);
         if (d < least) {
             least = d;
             *cone = k;
@@ -251,7 +228,7 @@ static void random_rays(void **state) {
             loose += fabs((double)hit.t - t.t) > 0.05 * cell;
             if (nearest != hit.cone) {
                 other++;
-                assert_near(cone_distance(c.grid.cones + 2 * hit.cone, p), d, 1e-4);
+                assert_near(vessel_cone_distance(c.grid.cones + 2 * hit.cone, p), d, 1e-4);
             }
             lao_v3 g = sdv_round_cone_gradient(hit.position, c.grid.cones[2 * hit.cone],
                                                c.grid.cones[2 * hit.cone + 1]);

@@ -1,5 +1,6 @@
 #include "vessel_host.h"
 
+#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -99,4 +100,29 @@ void vessel_random_tree(uint32_t seed, uint32_t n, double size, double radius, f
             segments[i - 1].child = i;
         }
     }
+}
+
+double vessel_cone_distance(const lao_v4 *cone, const double p[3]) {
+    double a[3], b[3], q[3], s2 = 0, qa = 0, qq = 0, qb = 0;
+    double ra = (double)cone[0].w, rb = (double)cone[1].w, d = ra - rb;
+    const float fa[3] = {cone[0].x, cone[0].y, cone[0].z},
+                fb[3] = {cone[1].x, cone[1].y, cone[1].z};
+    for (int k = 0; k < 3; k++) {
+        a[k] = (double)fa[k];
+        b[k] = (double)fb[k] - a[k];
+        q[k] = p[k] - a[k];
+        s2 += b[k] * b[k];
+        qa += q[k] * b[k];
+        qq += q[k] * q[k];
+        qb += (q[k] - b[k]) * (q[k] - b[k]);
+    }
+    double s = sqrt(s2);
+    if (s <= fabs(d) + 1e-6 * fmax(ra, rb))
+        return d < 0 ? sqrt(qb) - rb : sqrt(qq) - ra;
+    double x = qa / s, y = sqrt(fmax(qq - x * x, 0)), t = x - y * d / sqrt(s2 - d * d);
+    if (t < 0)
+        return sqrt(qq) - ra;
+    if (t > s)
+        return sqrt(qb) - rb;
+    return (d * x + sqrt(s2 - d * d) * y) / s - ra;
 }

@@ -33,4 +33,8 @@ lao_v3 vessel_direction(uint32_t *seed);
 void vessel_random_tree(uint32_t seed, uint32_t n, double size, double radius, float *positions,
                         float *radii, sdv_segment *segments);
 
+/* Signed distance of p to a round cone (centre and radius of both ends) in double precision, by the
+   three regions of METHODS.md 4. */
+double vessel_cone_distance(const lao_v4 *cone, const double p[3]);
+
 #endif

@@ -1,6 +1,7 @@
 /* Vessel trees on both backends: every texel of the traced images is what sdv_trace gives for the
    pixel's ray (sdv_trace_shapes where it is combined with shapes), to the bit, and the shaded
-   picture is the shared functions'. */
+   picture is the shared functions', cut or not: light, shadow, openness, outlines and colours, also
+   of the vessel that is nearest to a shape. */
 #include "render_host.h"
 #include "vessel_subject.h"
 
@@ -116,13 +117,37 @@ static lao_v3 color_of(const uint8_t *bytes) {
                        (float)bytes[2] / 255.0f);
 }
 
+/* What the tree is combined with, and what its surfaces are coloured with; NULL: nothing. */
+typedef struct solid {
+    const sdv_shapes *shapes;
+    const float *colors;
+} solid;
+
+/* The colour of the vessel there, of the shape, or of the vessel that is nearest to it. */
+static lao_v3 color_at(const subject *tree, const solid *of, lao_v4 hit, lao_v4 r) {
+    lao_v3 p = lao_v3_make(hit.x, hit.y, hit.z);
+    uint32_t cone = (uint32_t)hit.w;
+    if (hit.w < 0) {
+        const float *own = of->colors + 3 * (size_t)(0.5f * r.w);
+        if (own[0] >= 0)
+            return lao_v3_make(own[0], own[1], own[2]);
+        sdv_cones_distance(tree->grid.cones, tree->grid.cone_count, p, &cone); /* by brute force */
+    }
+    const lao_v4 *ends = tree->grid.cones + 2 * (size_t)cone;
+    const uint8_t *colors = tree->colors + 8 * (size_t)cone;
+    return sdv_cone_color(p, ends[0], ends[1], color_of(colors), color_of(colors + 4));
+}
+
 /* What the pixel shows; false: nothing is drawn. */
-static bool shade_of(const subject *tree, const float *v, const lao_frame_uniforms *frame,
-                     const sdv_ray *ray, lao_v4 hit, lao_v4 n, lao_v4 r, lao_v3 *out) {
+static bool shade_of(const subject *tree, const solid *of, const float *v,
+                     const lao_frame_uniforms *frame, const sdv_ray *ray, lao_v4 hit, lao_v4 n,
+                     lao_v4 r, lao_v3 *out) {
     lao_v3 normal = lao_v3_make(n.x, n.y, n.z), p = lao_v3_make(hit.x, hit.y, hit.z);
     lao_v3 miss = lao_transform(frame->view, lao_v3_along(ray->origin, ray->direction, r.y));
     float zoom = sdv_zoom(frame->scale, frame->depth, -miss.z, 1);
     float diameter = frame->depth.z, light = 1;
+    const sdv_shapes *shapes = of ? of->shapes : NULL;
+    bool inside = of ? (uint32_t)r.w % 2 == 1 : r.w > 0.5f;
     bool missed = hit.w == -1.0f, near = v[SDV_SETTING_ID_near_miss] != SDV_NEAR_MISS_NONE;
     float width = v[missed ? SDV_SETTING_ID_silhouette : SDV_SETTING_ID_contour];
     *out = lao_v3_make(0, 0, 0);
@@ -130,19 +155,20 @@ static bool shade_of(const subject *tree, const float *v, const lao_frame_unifor
         return true;
     if (missed)
         return false;
-    normal = sdv_smooth_normal(&tree->grid, p, (uint32_t)hit.w, normal,
-                               v[SDV_SETTING_ID_joint_smoothness]);
+    if (hit.w >= 0)
+        normal = sdv_smooth_normal(&tree->grid, p, (uint32_t)hit.w, normal,
+                                   v[SDV_SETTING_ID_joint_smoothness]);
     if (v[SDV_SETTING_ID_field_occlusion] > 0)
         light = sdv_dimmed(light,
-                           1.0f - sdv_openness(&tree->grid, p, normal,
+                           1.0f - sdv_openness(&tree->grid, shapes, p, normal,
                                                0.01f * v[SDV_SETTING_ID_occlusion_reach] * diameter,
-                                               r.w > 0.5f),
+                                               inside),
                            v[SDV_SETTING_ID_occlusion_strength]);
     if (v[SDV_SETTING_ID_field_shadow] > 0) {
         lao_v3 lamp = sdv_shadow_light(frame->world, v[SDV_SETTING_ID_shadow_light_x],
                                        v[SDV_SETTING_ID_shadow_light_y]);
         float lit =
-            sdv_shadow(&tree->grid, NULL, p, lamp, 1.0f / v[SDV_SETTING_ID_field_shadow_softness],
+            sdv_shadow(&tree->grid, shapes, p, lamp, 1.0f / v[SDV_SETTING_ID_field_shadow_softness],
                        sdv_shadow_bias(tree->grid.cell));
         light = sdv_dimmed(light, 1.0f - lit, v[SDV_SETTING_ID_field_shadow_strength]);
     }
@@ -152,17 +178,15 @@ static bool shade_of(const subject *tree, const float *v, const lao_frame_unifor
                                             0.01f * v[SDV_SETTING_ID_shadow_width] * diameter,
                                             v[SDV_SETTING_ID_shadow_softness]),
                            v[SDV_SETTING_ID_shadow_strength]);
-    const lao_v4 *cone = tree->grid.cones + 2 * (size_t)hit.w;
-    const uint8_t *colors = tree->colors + 8 * (size_t)hit.w;
-    lao_v3 color = sdv_cone_color(p, cone[0], cone[1], color_of(colors), color_of(colors + 4));
-    *out = sdv_shade(color, normal, lao_v3_scale(ray->direction, -1.0f),
+    *out = sdv_shade(color_at(tree, of, hit, r), normal, lao_v3_scale(ray->direction, -1.0f),
                      v[SDV_SETTING_ID_surface_ambient], v[SDV_SETTING_ID_surface_diffuse],
                      v[SDV_SETTING_ID_surface_specular],
                      (lao_int)v[SDV_SETTING_ID_surface_shininess], light);
     return true;
 }
 
-static void check_shade(const scene *s, const subject *tree, const render_result *result) {
+static void check_shade(const scene *s, const subject *tree, const solid *of,
+                        const render_result *result) {
     const render_image *position = render_find(result, "vessel_position", 0);
     const render_image *normal = render_find(result, "vessel_normal", 0);
     const render_image *ray_image = render_find(result, "vessel_ray", 0);
@@ -176,7 +200,7 @@ static void check_shade(const scene *s, const subject *tree, const render_result
         sdv_ray ray;
         lao_v3 c;
         ray_of(&result->frame, x, y, &ray);
-        bool drawn = shade_of(tree, values, &result->frame, &ray, texel_of(position, x, y),
+        bool drawn = shade_of(tree, of, values, &result->frame, &ray, texel_of(position, x, y),
                               texel_of(normal, x, y), texel_of(ray_image, x, y), &c);
         const uint8_t bytes[4] = {unorm8(c.x), unorm8(c.y), unorm8(c.z), 255};
         all += drawn;
@@ -199,7 +223,7 @@ static void check(scene *s, const subject *tree, uint32_t least_hits) {
         render_need(&devices[i]);
         render_draw(&devices[i], &s->shot, &results[i]);
         assert_in_range(check_trace(s, tree, &results[i]), least_hits, WIDTH * HEIGHT);
-        check_shade(s, tree, &results[i]);
+        check_shade(s, tree, NULL, &results[i]);
     }
     same_image("zbuffer", &results[0], &results[1]);
     same_image("shaded", &results[0], &results[1]);
@@ -334,6 +358,7 @@ static void with_shapes(void **state) {
         const float colors[3 * SHAPES] = {-1, 0, 0, 0.9f, 0.5f, 0.1f, -1, 0, 0,
                                           0,  1, 0, 0,    0,    0,    -1, 0, 0};
         assert_int_equal(sdv_object_shapes(NULL, &c.shapes, colors, &tree.object), LAO_OK);
+        const solid seen = {&c.shapes, colors};
         s.vessel.field_shadow = count > 2 ? 1.0f : 0.0f;
         for (int i = 0; i < 2; i++) {
             uint32_t cut = 0;
@@ -341,6 +366,7 @@ static void with_shapes(void **state) {
             render_draw(&devices[i], &s.shot, &results[i]);
             assert_in_range(check_carved(&s, &tree, &c, &results[i], &cut), 200, WIDTH * HEIGHT);
             assert_in_range(cut, 10, WIDTH * HEIGHT);
+            check_shade(&s, &tree, &seen, &results[i]);
         }
         same_image("zbuffer", &results[0], &results[1]);
         same_image("out", &results[0], &results[1]);

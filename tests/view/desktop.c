@@ -1,6 +1,7 @@
 #include "desktop.h"
 
 #include <X11/XKBlib.h>
+#include <X11/Xatom.h>
 #include <X11/Xlib.h>
 #include <X11/Xutil.h>
 #include <X11/extensions/XTest.h>
@@ -84,6 +85,14 @@ desktop *desktop_start(void) {
     assert_non_null(d->display);
     d->source = XCreateSimpleWindow(d->display, DefaultRootWindow(d->display), 0, 0, 1, 1, 0, 0, 0);
     return d;
+}
+
+void desktop_resolution(desktop *d, int dots) {
+    char text[32];
+    int length = snprintf(text, sizeof text, "Xft.dpi:\t%d\n", dots);
+    XChangeProperty(d->display, DefaultRootWindow(d->display), XA_RESOURCE_MANAGER, XA_STRING, 8,
+                    PropModeReplace, (const unsigned char *)text, length);
+    XSync(d->display, False);
 }
 
 void desktop_stop(desktop *d) {

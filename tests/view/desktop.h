@@ -12,6 +12,8 @@ typedef struct desktop desktop;
 /* Starts the screen, with 1600 x 1000 px. NULL: there is no Xvfb. */
 desktop *desktop_start(void);
 void desktop_stop(desktop *d);
+/* Dots per inch of the monitor, for viewers that are started from now on; 96 at first. */
+void desktop_resolution(desktop *d, int dots);
 
 /* Starts a viewer with --trace and these arguments, and waits until it is ready. */
 void viewer_start(desktop *d, const char *program, const char *const *arguments);

@@ -54,6 +54,31 @@ static const char *const flow[] = {"render",  "--scene", "flow",   "--lines", "1
 
 /* ---- handling ----------------------------------------------------------------------------- */
 
+static float said_number(desktop *d, const char *begin) {
+    return strtof(viewer_hears(d, begin), NULL);
+}
+
+/* Keys and clicks of the player: the time is that of the step, of the place on the timeline; the
+ * speed changes by a half. */
+static void steps_and_jumps(desktop *d) {
+    user_clicks(d, "timeline"); /* its middle */
+    float middle = said_number(d, "time ");
+    viewer_rests(d, 0.4); /* it is said while the button is down */
+    user_types(d, "Right");
+    float later = said_number(d, "time ");
+    assert_true(later > middle);
+    user_types(d, "Left");
+    assert_float_equal(said_number(d, "time "), middle, 0.01f);
+    user_types(d, "period");
+    float fast = said_number(d, "speed ");
+    user_types(d, "comma");
+    assert_float_equal(said_number(d, "speed ") * 1.5f, fast, 0.001f * fast);
+    user_types(d, "l");
+    assert_string_equal(viewer_hears(d, "loop "), "off");
+    user_types(d, "l");
+    assert_string_equal(viewer_hears(d, "loop "), "on");
+}
+
 static void plays_and_stops(desktop *d) {
     user_types(d, "space");
     assert_string_equal(viewer_hears(d, "player "), "plays");
@@ -62,12 +87,34 @@ static void plays_and_stops(desktop *d) {
     user_clicks(d, "Pause##play");
     assert_string_equal(viewer_hears(d, "player "), "pauses");
     viewer_rests(d, 0.6);
-    user_types(d, "Right");
-    viewer_hears(d, "frame");
-    user_clicks(d, "timeline"); /* its middle */
-    viewer_hears(d, "frame");
+    steps_and_jumps(d);
     user_clicks(d, "Stop");
     assert_string_equal(viewer_hears(d, "player "), "stops");
+    assert_true(said_number(d, "time ") < 10); /* the first one */
+}
+
+/* A view that was kept, looked away from and returned to; written to a file, and read by name. */
+static void keeps_views(desktop *d) {
+    char camera[2048], command[8192];
+    user_clicks(d, "View");
+    viewer_rests(d, 0.4);
+    user_types(d, "2");
+    user_types(d, "c");
+    snprintf(camera, sizeof camera, "%s", strstr(viewer_hears(d, "command "), " --camera "));
+    user_clicks(d, "1+##bookmark 1");
+    user_clicks(d, "Save view");
+    assert_string_equal(viewer_hears(d, "saved "), "camera.json");
+    user_types(d, "3");
+    user_types(d, "c");
+    assert_string_not_equal(strstr(viewer_hears(d, "command "), " --camera "), camera);
+    user_clicks(d, "1##bookmark 1");
+    user_types(d, "c");
+    assert_string_equal(strstr(viewer_hears(d, "command "), " --camera "), camera);
+    user_types(d, "4");
+    user_clicks(d, "Load views");
+    user_types(d, "c");
+    snprintf(command, sizeof command, "%s", viewer_hears(d, "command "));
+    assert_string_equal(strstr(command, " --camera "), camera);
 }
 
 /* Hides the panels and waits for the picture in their place. */
@@ -190,7 +237,7 @@ static void click_middle(desktop *d, int right) {
 static void focuses_surfaces(fixture *f) {
     char command[8192];
     desktop *d = f->desktop;
-    click_middle(d, 0);
+    click_middle(d, -70); /* on the wide vessel */
     assert_int_equal(viewer_hears(d, "picked ")[0], '3');
     user_clicks(d, "Focus here");
     assert_non_null(strchr(viewer_hears(d, "focus "), ','));
@@ -209,8 +256,8 @@ static void focuses_surfaces(fixture *f) {
 }
 
 static void saves_surfaces(void **state) {
-    static const char *const words[] = {"surface", "--scene",    "aneurysm", "--ssaa",
-                                        "1",       "--contours", "0.3",      NULL};
+    static const char *const words[] = {"surface", "--scene",    "liver", "--ssaa",
+                                        "1",       "--contours", "0.3",   NULL};
     fixture *f = *state;
     start(f, words);
     writes_what_the_program_writes(f->desktop, "opacity");
@@ -223,17 +270,37 @@ static const char tree_file[] =
     "1 1 0 0 0 4 -1\n2 1 0 0 30 3 1\n3 1 10 0 50 2 2\n4 1 -10 0 50 2 2\n";
 static void write_file(const char *path, const char *text);
 
-/* Hears that the document is open again, with what was placed, and saves its picture, which is that
- * of the command line. */
+/* Hears that the document is open again, with what was placed. */
 static void assert_placed(desktop *d, const char *flag, bool placed) {
-    char command[8192];
     viewer_hears(d, "opened vessel");
     viewer_hears(d, "frame");
     viewer_rests(d, 0.6);
+    user_types(d, "c");
+    assert_true((strstr(viewer_hears(d, "command "), flag) != NULL) == placed);
+}
+
+/* The picture that is saved now is that of the command line. */
+static void assert_saved(desktop *d) {
+    char command[8192];
     save(d, command);
-    assert_true((strstr(command, flag) != NULL) == placed);
     run_command(command, "program.png");
     assert_same_file("picture.png", "program.png");
+}
+
+/* The pointer on a branch of the picture, then on one of the flat tree, which is clicked. */
+static void hovers_and_picks(desktop *d) {
+    int place[4];
+    user_points(d, 330 + (WIDTH - 330) / 2, 240);
+    assert_string_equal(viewer_hears(d, "hovers "), "1"); /* the end of the first branch */
+    user_clicks(d, "Tree");
+    viewer_rests(d, 0.4);
+    user_sees(d, "layout", place);
+    user_points(d, place[0] + place[2] / 4, place[1] + place[3] - 20); /* a leaf */
+    int leaf = atoi(viewer_hears(d, "hovers "));
+    assert_true(leaf == 2 || leaf == 3);
+    user_presses(d, 1, true);
+    assert_int_equal(atoi(viewer_hears(d, "node ")), leaf);
+    user_presses(d, 1, false);
 }
 
 /* A target, a path of two clicks, a cut; and back. */
@@ -249,6 +316,7 @@ static void places_on_trees(void **state) {
     desktop *d = f->desktop;
     write_file("aim.swc", tree_file);
     start(f, words);
+    hovers_and_picks(d);
     click_middle(d, 0);
     assert_int_equal(viewer_hears(d, "picked ")[0], '2');
     user_clicks(d, "Target here");
@@ -259,6 +327,7 @@ static void places_on_trees(void **state) {
     click_middle(d, 0);
     user_clicks(d, "Cut open here");
     assert_placed(d, " --subtract sphere:", true);
+    assert_saved(d); /* with path, risk and cut */
     user_clicks(d, "Tree");
     user_clicks(d, "Undo");
     assert_placed(d, " --subtract ", false);
@@ -356,22 +425,78 @@ static void write_file(const char *path, const char *text) {
     fclose(file);
 }
 
+/* A steady stream along x. */
+static void write_volume(const char *path) {
+    FILE *file = fopen(path, "w");
+    assert_non_null(file);
+    fputs("# vtk DataFile Version 3.0\nstream\nASCII\nDATASET STRUCTURED_POINTS\n"
+          "DIMENSIONS 12 8 8\nORIGIN 0 0 0\nSPACING 1 1 1\nPOINT_DATA 768\n"
+          "VECTORS velocity float\n",
+          file);
+    for (int i = 0; i < 768; i++)
+        fputs("0.5 0 0\n", file);
+    fclose(file);
+}
+
 static void opens_what_is_dropped(desktop *d) {
     char path[1024], folder[900];
     assert_non_null(getcwd(folder, sizeof folder));
     write_file("tree.swc", tree_file);
     snprintf(path, sizeof path, "%s/tree.swc", folder);
     user_drops(d, path);
-    assert_string_equal(viewer_hears(d, "opened "), "vessel tree.swc");
+    assert_string_equal(viewer_hears(d, "opened "), "render cross.obj"); /* both */
     viewer_hears(d, "frame");
+    user_types(d, "c");
+    assert_non_null(strstr(viewer_hears(d, "command "), "/tree.swc"));
     write_file("broken.swc", "1 1 0 0\n");
     snprintf(path, sizeof path, "%s/broken.swc", folder);
     user_drops(d, path);
     assert_non_null(strstr(viewer_hears(d, "error "), "broken.swc"));
     viewer_rests(d, 0.6);
     user_clicks(d, "Close");
-    user_types(d, "1"); /* the tree is still there */
+    user_types(d, "1"); /* the others are still there */
     assert_non_null(strstr(viewer_hears(d, "frame"), "ok"));
+    user_types(d, "c");
+    snprintf(path, sizeof path, "%s", viewer_hears(d, "command "));
+    assert_non_null(strstr(path, "/tree.swc"));
+    assert_null(strstr(path, "broken"));
+    write_volume("blood.vtk");
+    write_file("wall.obj", "v 0 0 0\nv 10 0 0\nv 0 10 0\nv 0 0 10\n"
+                           "f 1 3 2\nf 1 2 4\nf 1 4 3\nf 2 3 4\n");
+    for (int i = 0; i < 2; i++) {
+        static const char *const files[2] = {"wall.obj", "blood.vtk"};
+        snprintf(path, sizeof path, "%s/%s", folder, files[i]);
+        user_drops(d, path);
+        assert_string_equal(viewer_hears(d, "opened "), "render cross.obj");
+        assert_non_null(strstr(viewer_hears(d, "frame"), "ok"));
+        user_types(d, "c");
+        assert_non_null(strstr(viewer_hears(d, "command "), files[i]));
+    }
+}
+
+/* Lines, a tree and a wall in one picture; then without one of them. */
+static void mixes(void **state) {
+    static const char *const words[] = {"line.obj", "tree.swc", "wall.obj", "--ssaa", "1", NULL};
+    fixture *f = *state;
+    desktop *d = f->desktop;
+    write_file("line.obj", "v -20 0 -20\nv 0 5 10\nv 20 0 20\nl 1 2 3\n");
+    write_file("tree.swc", "1 1 0 0 0 4 -1\n2 1 0 0 30 3 1\n3 1 10 0 50 2 2\n4 1 -10 0 50 2 2\n");
+    write_file("wall.obj", "v -15 -15 -5\nv 15 -15 -5\nv 0 15 -5\nv 0 0 35\n"
+                           "f 1 3 2\nf 1 2 4\nf 2 3 4\nf 3 1 4\n");
+    start(f, words);
+    writes_what_the_program_writes(d, "strength");
+    user_types(d, "c");
+    assert_non_null(strstr(viewer_hears(d, "command "), "line.obj --set strength="));
+    user_clicks(d, "Scene");
+    user_clicks(d, "Take away"); /* the last: the wall */
+    assert_string_equal(viewer_hears(d, "opened "), "render line.obj");
+    viewer_hears(d, "frame");
+    user_types(d, "c");
+    const char *command = viewer_hears(d, "command ");
+    assert_null(strstr(command, "wall.obj"));
+    assert_non_null(strstr(command, "tree.swc --ssaa 1"));
+    assert_non_null(strstr(command, "line.obj --set strength="));
+    quit(f);
 }
 
 /* ---- picking and comparing ------------------------------------------------------------------- */
@@ -417,6 +542,22 @@ static void picks_and_opens(void **state) {
     quit(f);
 }
 
+/* Bits that differ. */
+static long said_bits(desktop *d) {
+    const char *said = viewer_hears(d, "compared ");
+    return strtol(strrchr(said, ' '), NULL, 10);
+}
+
+/* One setting, alike on both sides at first; with two values the pictures differ. */
+static void compares_settings(desktop *d) {
+    viewer_rests(d, 1);
+    user_clicks(d, "##differs");
+    user_clicks(d, "##differs occlusion");
+    assert_int_equal(said_bits(d), 0);
+    user_clicks(d, "right value ##value");
+    assert_true(said_bits(d) > 0);
+}
+
 static void compares_backends(desktop *d) {
     user_clicks(d, "Compare");
     viewer_rests(d, 1); /* the panel has its final places */
@@ -433,6 +574,7 @@ static void compares_backends(desktop *d) {
         user_types(d, "2");
     }
     viewer_hears(d, "compared out ");
+    compares_settings(d);
     user_clicks(d, "Two pictures side by side");
     viewer_hears(d, "frame");
 }
@@ -442,11 +584,31 @@ static void shows_lines(void **state) {
     fixture *f = *state;
     start(f, flow);
     plays_and_stops(f->desktop);
+    keeps_views(f->desktop);
     turns_and_resizes(f->desktop);
     writes_what_the_program_writes(f->desktop, "strength");
     shows_what_the_program_writes(f->desktop);
     compares_backends(f->desktop);
     quit(f);
+}
+
+/* On a monitor of twice the pixels per inch everything is twice as large, unless told. */
+static void follows_the_monitor(void **state) {
+    fixture *f = *state;
+    const char *words[] = {"--backend", f->backend, "--window", "1500x500", "render",
+                           "--scene",   "crossing", "--lines",  "50",       NULL};
+    int heights[2];
+    for (int i = 0; i < 2; i++) {
+        int place[4];
+        desktop_resolution(f->desktop, i ? 192 : 96);
+        viewer_start(f->desktop, viewer, words);
+        viewer_hears(f->desktop, "frame");
+        user_sees(f->desktop, "Scene", place);
+        heights[i] = place[3];
+        quit(f);
+    }
+    desktop_resolution(f->desktop, 96);
+    assert_in_range(heights[1], 2 * heights[0] - 2, 2 * heights[0] + 2);
 }
 
 /* ---- all of it ----------------------------------------------------------------------------- */
@@ -499,7 +661,9 @@ int main(int argc, char **argv) {
         {"saves_trees", saves_trees, NULL, clean_up, &f},
         {"places_on_trees", places_on_trees, NULL, clean_up, &f},
         {"makes_videos", makes_videos, NULL, clean_up, &f},
+        {"follows_the_monitor", follows_the_monitor, NULL, clean_up, &f},
         {"picks_and_opens", picks_and_opens, NULL, clean_up, &f},
+        {"mixes", mixes, NULL, clean_up, &f},
     };
     void *state = &f;
     if (argc > 4) /* those of this name */
