@@ -621,6 +621,28 @@ static bool is_line_name(const char *path) {
     return dot && is_choice("vtp|trk|tck", dot + 1);
 }
 
+static bool check_lens(const cli_options *o) {
+    const cli_vessel_options *v = &o->vessel;
+    const cli_lens_option *lens = &v->lens;
+    const char *more = lens->style   ? "--lens-style"
+                       : lens->color ? "--lens-color"
+                       : lens->tree  ? "--lens-tree"
+                                     : NULL;
+    if (!lens->text)
+        return !more || cli_fail("%s: inside what? write --lens", more);
+    if (v->link || o->dump)
+        return cli_fail("--lens: leave %s out, which shows one tree",
+                        v->link ? "--link" : "--dump");
+    if (lens->color && strcmp(lens->color, "distance") == 0 && !v->target_count)
+        return cli_fail("--lens-color: distance needs a --path or a --target");
+    if (lens->is_circle)
+        return true;
+    if (lens->style && strcmp(lens->style, "void") == 0)
+        return cli_fail("--lens-style: there is no void in a ball; write --lens circle:X,Y,R");
+    return v->shape_count < CLI_SHAPES ||
+           cli_fail("--lens: a ball is a further shape, of %d at most", CLI_SHAPES);
+}
+
 static bool check_vessel(const cli_options *o) {
     const cli_vessel_options *v = &o->vessel;
     if (o->file_count > 1)
@@ -650,7 +672,7 @@ static bool check_vessel(const cli_options *o) {
                         o->camera ? "--camera"
                         : o->view ? "--view"
                                   : "--ortho");
-    return true;
+    return check_lens(o);
 }
 
 static bool check_surface(const cli_options *o) {

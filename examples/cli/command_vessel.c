@@ -398,7 +398,8 @@ int cli_vessel(const cli_options *options) {
     s.options = options;
     s.trees = trees;
     s.lens = &lens;
-    bool ok = plan(&s, &panel) && cli_lens_plan(&panel, &lens);
+    bool ok = plan(&s, &panel);
+    cli_lens_plan(&panel, &lens);
     do
         ok = ok && cli_tree_load(&panel, NULL, s.count, &trees[s.count]);
     while (++s.count < o->target_count && ok);

@@ -4,26 +4,6 @@
 
 #include <string.h>
 
-static bool check(const cli_options *options) {
-    const cli_vessel_options *o = &options->vessel;
-    const cli_lens_option *lens = &o->lens;
-    const char *more = lens->style   ? "--lens-style"
-                       : lens->color ? "--lens-color"
-                       : lens->tree  ? "--lens-tree"
-                                     : NULL;
-    if (!lens->text)
-        return !more || cli_fail("%s: inside what? write --lens", more);
-    if (o->link || options->dump)
-        return cli_fail("--lens: leave %s away, which shows one tree",
-                        o->link ? "--link" : "--dump");
-    if (lens->is_circle)
-        return true;
-    if (lens->style && strcmp(lens->style, "void") == 0)
-        return cli_fail("--lens-style: there is no void in a ball; write --lens circle:X,Y,R");
-    return o->shape_count < CLI_SHAPES ||
-           cli_fail("--lens: a ball is a further shape, of %d at most", CLI_SHAPES);
-}
-
 /* Cuts have the colours of the vessels that they cut. */
 static void cut(cli_vessel_options *o, lao_int operation) {
     if (!o->shape_color && !o->shape_count)
@@ -31,12 +11,10 @@ static void cut(cli_vessel_options *o, lao_int operation) {
     o->shapes[o->shape_count++] = (cli_shape_option){(uint32_t)operation, o->lens.text};
 }
 
-bool cli_lens_plan(cli_options *options, cli_lens *lens) {
+void cli_lens_plan(cli_options *options, cli_lens *lens) {
     const cli_lens_option *o = &options->vessel.lens;
-    if (!check(options))
-        return false;
     if (!o->text)
-        return true;
+        return;
     lens->options = *options;
     lens->source = options->file_count ? options->files[0] : options->all;
     lens->options.files = &lens->source;
@@ -53,7 +31,6 @@ bool cli_lens_plan(cli_options *options, cli_lens *lens) {
         cut(&options->vessel, SDV_SUBTRACTION);
         cut(&lens->options.vessel, SDV_INTERSECTION);
     }
-    return true;
 }
 
 bool cli_lens_load(cli_lens *lens, const cli_tree *outside) {

@@ -12,8 +12,8 @@ typedef struct cli_lens {
 } cli_lens;
 
 /* Makes the options of what is inside from those of all, whose tree is cut by a ball. `lens` is all
- * zero before, and does not move. False: reported. */
-bool cli_lens_plan(cli_options *options, cli_lens *lens);
+ * zero before, and does not move. */
+void cli_lens_plan(cli_options *options, cli_lens *lens);
 /* Reads what is inside, once the other tree is. False: reported; free lens->tree in any case. */
 bool cli_lens_load(cli_lens *lens, const cli_tree *outside);
 /* Adds it to the scene of the other tree, which is prepared. False: reported. */
