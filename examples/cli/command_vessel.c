@@ -96,10 +96,15 @@ static bool write_page(const char *path, stage *s) {
     return ok;
 }
 
+/* The tree whose colours show a number, if one does. */
+static const cli_tree *scaled_tree(const stage *s) {
+    return s->trees[0].value ? &s->trees[0] : &s->lens->tree;
+}
+
 static bool draw_legend(void *user, picture *p) {
     stage *s = user;
     const char *side = s->options->legend;
-    return !side || strcmp(side, "off") == 0 || cli_tree_legend(&s->trees[0], side, p);
+    return !side || strcmp(side, "off") == 0 || cli_tree_legend(scaled_tree(s), side, p);
 }
 
 static bool write_view(const char *path, stage *s) {
@@ -227,7 +232,7 @@ static bool prepare(stage *s, const view_list *views) {
     for (uint32_t i = 0; ok && i < s->count; i++)
         ok = cli_tree_prepare(&s->trees[i]);
     ok = ok && cli_lens_prepare(s->lens, &s->trees[0]);
-    if (ok && scaled && !s->trees[0].value)
+    if (ok && scaled && !scaled_tree(s)->value)
         ok = cli_fail("--legend: these colours show no number; write --color radius, order or "
                       "distance, or the NAME of an attribute");
     ok = ok && cli_shot_make(s->trees[0].options, &s->trees[0].scene, &s->shot);
