@@ -3,6 +3,7 @@
 #include "image.h"
 #include "report.h"
 #include "writing.h"
+#include "vessel_lens.h"
 #include "vessel_page.h"
 #include "video.h"
 
@@ -69,6 +70,7 @@ typedef struct stage {
     const cli_options *options; /* of the whole picture */
     cli_tree *trees;
     uint32_t count;
+    cli_lens *lens;
     cli_shot shot;
     cli_session sessions[CLI_TARGETS];
     cli_page page;              /* with --link */
@@ -224,6 +226,7 @@ static bool prepare(stage *s, const view_list *views) {
     bool scaled = side && strcmp(side, "off") != 0, ok = true;
     for (uint32_t i = 0; ok && i < s->count; i++)
         ok = cli_tree_prepare(&s->trees[i]);
+    ok = ok && cli_lens_prepare(s->lens, &s->trees[0]);
     if (ok && scaled && !s->trees[0].value)
         ok = cli_fail("--legend: these colours show no number; write --color radius, order or "
                       "distance, or the NAME of an attribute");
@@ -232,6 +235,8 @@ static bool prepare(stage *s, const view_list *views) {
         s->shot.camera = views->poses[0];
     for (uint32_t i = 0; ok && i < s->count; i++)
         cli_tree_fit_period(&s->trees[i], &s->shot);
+    if (ok)
+        cli_lens_fit(s->lens, &s->trees[0], &s->shot);
     return ok && cli_write_camera(options, &s->shot.camera) &&
            (!options->vessel.link || !options->out || draw_flats(s));
 }
@@ -381,6 +386,7 @@ int cli_vessel(const cli_options *options) {
                               o->tree,      o->layout[0],  o->layout[1],     o->layout[2]};
     cli_options panel = *options; /* of one tree's picture */
     cli_tree trees[CLI_TARGETS];
+    cli_lens lens;
     stage s;
     for (int i = 0; i < 8; i++) {
         if (!cli_writable(outputs[i]))
@@ -388,17 +394,21 @@ int cli_vessel(const cli_options *options) {
     }
     memset(&s, 0, sizeof s);
     memset(trees, 0, sizeof trees);
+    memset(&lens, 0, sizeof lens);
     s.options = options;
     s.trees = trees;
+    s.lens = &lens;
     bool ok = plan(&s, &panel);
+    cli_lens_plan(&panel, &lens);
     do
         ok = ok && cli_tree_load(&panel, NULL, s.count, &trees[s.count]);
     while (++s.count < o->target_count && ok);
-    ok = ok && run(&s);
+    ok = ok && cli_lens_load(&lens, &trees[0]) && run(&s);
     for (uint32_t i = 0; i < s.count; i++) {
         cli_session_close(&s.sessions[i]);
         picture_free(&s.flats[i]);
         cli_tree_free(&trees[i]);
     }
+    cli_tree_free(&lens.tree);
     return ok ? CLI_OK : CLI_FAILED;
 }
