@@ -1671,7 +1671,8 @@ LAO_FN bool sdv_lens_rings(float side, float part) {
 }
 /* Pixels of the picture per mm at view depth z; scale, depth: of lao_frame_uniforms. */
 LAO_FN float sdv_zoom(lao_v4 scale, lao_v4 depth, float z, float supersampling) {
-    LAO_EXACT float across = (depth.w > 0.5f ? 1.0f : lao_max(z, 1.0e-6f)) * supersampling;
+    float apart = lao_max(z, 1.0e-6f);
+    LAO_EXACT float across = (depth.w > 0.5f ? 1.0f : apart) * supersampling;
     LAO_EXACT float r = lao_abs(scale.y) / across;
     return r;
 }
@@ -1817,7 +1818,8 @@ LAO_FN lao_v3 sdv_shadow_light(lao_m4 world, float x, float y) {
 }
 /* mm across a pixel at that depth. */
 LAO_FN float sdv_pixel_size(lao_v4 ray, float depth, float orthographic) {
-    LAO_EXACT float r = lao_abs(ray.y) * (orthographic > 0.5f ? 1.0f : lao_abs(depth));
+    float apart = lao_abs(depth);
+    LAO_EXACT float r = lao_abs(ray.y) * (orthographic > 0.5f ? 1.0f : apart);
     return r;
 }
 /* From pixel to pixel along an axis, on the side where depth changes less. */
