@@ -95,6 +95,9 @@ typedef struct cli_vessel_options {
     uint32_t margin;         /* pixels */
     bool last;
     uint32_t grid, nodes; /* cells; nodes of the embedded tree; 0: not given */
+    double section;       /* of all nodes; negative: not given */
+    const char *uncertainty;
+    double bump_size; /* mm; negative: not given */
     cli_shape_option shapes[CLI_SHAPES];
     uint32_t shape_count;
 } cli_vessel_options;
@@ -105,10 +108,10 @@ enum { CLI_MOST_TRIANGLES = 1 << 24 };
 /* What `surface` does with a mesh. */
 typedef struct cli_surface_options {
     const char *lines, *vertices, *baseline, *focus, *value, *flip, *colormap;
-    double focus_at[4]; /* two numbers (depths, mm) or four (a ball) */
-    int focus_numbers;  /* 0: none */
+    double focus_at[4];                          /* two numbers (depths, mm) or four (a ball) */
+    int focus_numbers;                           /* 0: none */
     uint32_t smooth, subdivide, triangles, grid; /* 0: not given */
-    double brightness;  /* mm; 0: from the mesh; negative: not given */
+    double brightness;                           /* mm; 0: from the mesh; negative: not given */
     double contours[2]; /* mm, width of contours and suggestive contours; 0: none */
     double threshold;   /* 1/mm^2, of the latter; negative: not given */
     bool normals;
