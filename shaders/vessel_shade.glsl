@@ -26,6 +26,7 @@ LAO_CONSTANT(6, lao_constant_variant) /* 1: with shapes; 2: not a tree */
 LAO_CONSTANT(7, lao_constant_supersampling)
 LAO_CONSTANT(8, lao_constant_field_shadow)
 LAO_CONSTANT(9, lao_constant_has_vessel_cells)
+LAO_CONSTANT(10, lao_constant_has_vessel_forms)
 
 LAO_OUT(0, vec4, out_color)
 

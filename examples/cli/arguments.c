@@ -69,6 +69,9 @@ static const flag_row flags[] = {
     {"--target", NULL, "X,Y,Z,R|MESH", FLAG_TARGET, CLI_VESSEL, ALL(vessel.targets), NULL, "the same to a ball, or to the surface in a file: a tumour"},
     {"--risk", NULL, "MM", FLAG_LENGTH, CLI_VESSEL, ALL(vessel.risk), NULL, "mark vessels nearer than this with a pattern, and list them in --json (with --link 15)"},
     {"--link", NULL, NULL, FLAG_SWITCH, CLI_VESSEL, ALL(vessel.link), NULL, "the picture shows the 2D layout beside the tree, in the same colours and patterns; --path and --target may be given up to 6 times: a column for each"},
+    {"--section", NULL, "Q", FLAG_LENGTH, CLI_VESSEL, ALL(vessel.section), NULL, "elliptic cross sections: the shorter over the longer axis, 0.1..1 (the nodes' attribute section_ratio, its axis section_axis)"},
+    {"--uncertainty", NULL, "MM|NAME", FLAG_TEXT, CLI_VESSEL, ALL(vessel.uncertainty), NULL, "noise moves the surface by so much, in and out, up to 3/4 of the radius; of all nodes, or their attribute (uncertainty)"},
+    {"--bump-size", NULL, "MM", FLAG_LENGTH, CLI_VESSEL, ALL(vessel.bump_size), NULL, "across a bump of that noise (the mean radius, at least twice the greatest amplitude)"},
     {"--subtract", NULL, "SHAPE", FLAG_SHAPE, CLI_VESSEL, ALL(vessel.shapes), "2", "cut away sphere:X,Y,Z,R, box:X,Y,Z,X,Y,Z (two corners), plane:NX,NY,NZ,D (where n.p < D), ellipsoid:X,Y,Z,A,B,C (half axes) or the inside of a FILE (mesh or tree)"},
     {"--intersect", NULL, "SHAPE", FLAG_SHAPE, CLI_VESSEL, ALL(vessel.shapes), "1", "keep what is inside; the shapes are applied in the order of the flags"},
     {"--union", NULL, "SHAPE", FLAG_SHAPE, CLI_VESSEL, ALL(vessel.shapes), "0", "add the shape; --union tree adds the vessels again, behind the cuts of an organ"},
@@ -654,6 +657,8 @@ static bool check_vessel(const cli_options *o) {
         return cli_fail("vessel: no output is asked for; write -o out.png");
     if (v->grid && (v->grid < 16 || v->grid > 512))
         return cli_fail("--grid: '%u' is not a value of it; write 16..512", v->grid);
+    if (v->section >= 0 && !(v->section >= 0.1 && v->section <= 1))
+        return cli_fail("--section: '%g' is not a value of it; write 0.1..1", v->section);
     if (v->target_count > 1 && !v->link)
         return cli_fail("--path: is given beside --target; leave one of them out or write --link");
     const cli_source *source = o->file_count ? &o->files[0] : &o->all;
@@ -759,7 +764,7 @@ bool cli_parse(cli_command_bit command, int argc, char **argv, cli_options *out)
     out->size[1] = command == CLI_COMPARE ? 480 : 960;
     out->legend = command == CLI_VESSEL ? NULL : "off";
     out->all.colormap = command == CLI_VESSEL ? NULL : "viridis";
-    out->vessel.risk = -1;
+    out->vessel.risk = out->vessel.section = out->vessel.bump_size = -1;
     out->all.range[0] = (colour_end){command == CLI_VESSEL ? 0 : 2, true};
     out->all.range[1] = (colour_end){command == CLI_VESSEL ? 100 : 98, true};
     out->flow.threshold = -1;

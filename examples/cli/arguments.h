@@ -103,6 +103,9 @@ typedef struct cli_vessel_options {
     uint32_t margin;         /* pixels */
     bool last;
     uint32_t grid, nodes; /* cells; nodes of the embedded tree; 0: not given */
+    double section;       /* of all nodes; negative: not given */
+    const char *uncertainty;
+    double bump_size; /* mm; negative: not given */
     cli_shape_option shapes[CLI_SHAPES];
     uint32_t shape_count;
     cli_lens_option lens;
