@@ -34,9 +34,6 @@ header_of() {
     esac
 }
 
-# First words of frequent instructions (OpLoad, OpStore, ...): macros of two letters make lineao_shaders.h a sixth shorter.
-WORDS="262205 196670 262203 196679 327745 131320 196663 262187 327813 327809 131321 131326 393281 327734 327752 262394 262215 262176 196855 393273 65592 327811"
-
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT INT TERM
 die() {
@@ -110,15 +107,33 @@ spirv() {
         --eliminate-local-single-store --eliminate-local-multi-store --eliminate-dead-code-aggressive \
         --eliminate-dead-const --compact-ids -o "$work/$1.$3.spv" "$work/$1.$3.spv" ||
         die "spirv-opt refuses shaders/$1.glsl as $2"
-    od -An -v -tu4 -w64 "$work/$1.$3.spv" | awk -v words="$WORDS" '
-        BEGIN {n = split(words, word, " "); for (i = 1; i <= n; i++) short[word[i]] = sprintf("w%c", 96 + i)}
-        {for (i = 1; i <= NF; i++) printf "%s,", $i in short ? short[$i] : $i; print ""}' >"$work/$1.$3.words"
+    od -An -v -tu4 -w64 "$work/$1.$3.spv" | awk '{for (i = 1; i <= NF; i++) printf "%s,", $i; print ""}' >"$work/$1.$3.words"
+}
+
+# The words that macros of two letters shorten most, into $work/short: name and word. A quarter of lineao_shaders.h is saved.
+choose_macros() {
+    cat "$work"/*.words | awk -F, '
+        {for (i = 1; i < NF; i++) count[$i]++}
+        END {for (word in count) {
+            saved = count[word] * (length(word) - 2) - length(word) - 25 # #define and #undef
+            if (saved > 0) printf "%d %s\n", saved, word
+        }}' | sort -k1,1nr -k2,2n | awk '
+        BEGIN {n = split("a b c d e f g h i j k l m n o p q r s t u v w x y z " \
+                         "A B C D E F G H I J K L M N O P Q R S T U V W X Y Z 0 1 2 3 4 5 6 7 8 9", second, " ")}
+        NR <= 3 * n {print substr("wxz", int((NR - 1) / n) + 1, 1) second[(NR - 1) % n + 1], $2}' >"$work/short"
 }
 
 word_macros() { # define|undef
     printf '#ifdef LINEAO_SHADERS_SPIRV\n'
-    printf '%s\n' $WORDS | awk -v what="$1" '{printf "#%s w%c%s\n", what, 96 + NR, what == "define" ? " " $1 : ""}'
+    awk -v what="$1" '{print "#" what, $1 (what == "define" ? " " $2 : "")}' "$work/short"
     printf '#endif\n'
+}
+
+shorten() { # lines of words alone; the others stay
+    awk -F, -v short="$work/short" '
+        BEGIN {while ((getline line < short) > 0) {split(line, pair, " "); name[pair[2]] = pair[1]}}
+        /^[0-9]+,/ {for (i = 1; i < NF; i++) printf "%s,", $i in name ? name[$i] : $i; print ""; next}
+        {print}'
 }
 
 names() { # second and further arguments of a macro: names MACRO file
@@ -221,12 +236,14 @@ END
         printf '};\n'
     done
     printf '#endif\n'
-    word_macros define
     for module in $MODULES; do
         for shader in $(shaders_of "$module"); do
             make_shader "$shader"
         done
-    done
+    done >"$work/shaders"
+    choose_macros
+    word_macros define
+    shorten <"$work/shaders"
     word_macros undef
     printf '\nstatic const lao_shader lao_shaders[] = {\n'
     cat "$work/rows"

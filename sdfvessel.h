@@ -148,6 +148,18 @@ typedef struct sdv_tree_desc {
     uint32_t node_attribute_count, segment_attribute_count;
 } sdv_tree_desc;
 
+/* Attributes of nodes that give vessels a form (L19 6). Their surface stays inside the round cones
+   of the nodes' radii, with the amplitude added; all other functions than those that trace and
+   shade, distances to targets among them, know the round cones alone.
+   - SDV_SECTION_RATIO: the shorter over the longer axis of elliptic cross sections, 0.1 .. 1; the
+   node's radius is the longer one. SDV_SECTION_AXIS: direction of the shorter one (3 components,
+   world; none: z). A cone has one section, the mean of its nodes'.
+   - SDV_UNCERTAINTY: mm, up to 3/4 of the radius: by so much, in and out, noise moves the surface.
+   What is no number counts as 1 and 0. */
+#define SDV_SECTION_RATIO "section_ratio"
+#define SDV_SECTION_AXIS "section_axis"
+#define SDV_UNCERTAINTY "uncertainty"
+
 /* Counts and ranges. */
 typedef struct sdv_tree_info {
     uint32_t nodes, segments;
@@ -169,9 +181,10 @@ typedef struct sdv_warning {
     uint32_t first; /* the first of them: index in the desc's array (nodes, segments), or node */
 } sdv_warning;
 
-/* A tree: read its arrays freely, change only `nodes` (then sdv_grid_update). Node and segment
-   indices keep the order of the desc. The children of a node are counted by its segments; `parents`
-   and `order` follow one spanning tree per root, so that they exist in graphs with loops too. */
+/* A tree: read its arrays freely, change only `nodes` (then sdv_grid_update) and `bump_size`. Node
+   and segment indices keep the order of the desc. The children of a node are counted by its
+   segments; `parents` and `order` follow one spanning tree per root, so that they exist in graphs
+   with loops too. */
 typedef struct sdv_tree {
     uint32_t node_count, segment_count, root_count;
     lao_v4 *nodes;             /* x, y, z, radius, mm */
@@ -188,6 +201,7 @@ typedef struct sdv_tree {
     uint32_t source_count;     /* entries of node_targets */
     sdv_attribute *node_attributes, *segment_attributes;
     uint32_t node_attribute_count, segment_attribute_count;
+    float bump_size; /* mm across a bump of SDV_UNCERTAINTY; 0: what suits it */
     sdv_tree_info info;
     sdv_warning warnings[SDV_LOG_ITEM_COUNT];
     uint32_t warning_count;
@@ -335,9 +349,11 @@ typedef struct sdv_grid {
     float cell;    /* mm */
     uint32_t size[3];
     uint32_t cell_count, id_count, cone_count;
-    lao_v4 *cells;        /* cell_count */
-    float *ids;           /* id_count: numbers of cones */
-    lao_v4 *cones;        /* 2 per cone: centre and radius of both ends (parent, child) */
+    lao_v4 *cells; /* cell_count */
+    float *ids;    /* id_count: numbers of cones */
+    lao_v4 *cones; /* 2 per cone: centre and radius of both ends (parent, child) */
+    lao_v4 *forms; /* behind the cones; 2 per cone: section and bump of the shared text; NULL:
+                      all are round */
     uint32_t *cone_nodes; /* 2 per cone: the nodes */
     uint32_t *layer;      /* private: per cell x + 65536 y of the nearest occupied one at its z */
     uint32_t *occupied;   /* private: a bit per cell that lists something, words along x */
@@ -357,8 +373,8 @@ SDV_API lao_result sdv_grid_update(const sdv_host *host, const sdv_tree *tree,
                                    const uint32_t *nodes, uint32_t count, sdv_grid *grid);
 SDV_API void sdv_grid_free(sdv_grid *grid);
 /* Signed distance at any point, mm: exact within 1.13 cells of a surface and inside, else at
-   most 3.5 cells too great (mostly not at all). `cone` (Optional) gets the nearest one. Thread:
-   any. */
+   most 3.5 cells too great (mostly not at all); of a tree with forms a bound of that, 0 on the same
+   surface. `cone` (Optional) gets the nearest one. Thread: any. */
 SDV_API float sdv_grid_distance(const sdv_grid *grid, lao_v3 p, uint32_t *cone);
 /* The same by going through all cones: the oracle. */
 SDV_API float sdv_cones_distance(const lao_v4 *cones, uint32_t count, lao_v3 p, uint32_t *cone);
@@ -572,7 +588,15 @@ SDV_API const lao_module *sdv_pull_push_module(void);
     X(shadow_light_y, FLOAT, -100, 100, 0.8f, 0, "", "", "and up")                                 \
     X(field_shadow_softness, FLOAT, 0.001f, 10, 0.08f, 0, "", "",                                  \
       "radius of that light per its distance")                                                     \
-    X(field_shadow_strength, FLOAT, 0, 1, 0.55f, 0, "", "", "light that a field shadow takes away")
+    X(field_shadow_strength, FLOAT, 0, 1, 0.55f, 0, "", "",                                        \
+      "light that a field shadow takes away")                                                      \
+    X(lens_side, ENUM, 0, 2, 0, 0, "", "none|inside|outside",                                      \
+      "draw only inside or outside a circle on the picture, a magic lens")                         \
+    X(lens_x, FLOAT, -10, 10, 0.5f, 0, "", "",                                                     \
+      "its middle from the left, in widths of the picture")                                        \
+    X(lens_y, FLOAT, -10, 10, 0.5f, 0, "", "", "from the top, in heights of the picture")          \
+    X(lens_radius, FLOAT, 0, 10, 0.25f, 0, "", "", "its radius, in heights of the picture")        \
+    X(lens_rim, FLOAT, 0, 100, 2, 0, "px", "", "width of the ring that what is inside draws")
 
 /* What a vessel tree looks like; as lao_settings: zero is the default unless its bit is set. */
 typedef struct sdv_settings {
@@ -1188,6 +1212,123 @@ LAO_FN lao_v4 sdv_lattice_value(lao_v3 part, lao_v4 low, lao_v4 high) {
     LAO_EXACT float gx = d0 + (d1 - d0) * part.z;
     return lao_v4_make(gx, gy, gz, value);
 }
+/* ---- forms: what the cone of a tree with such attributes is instead of round and smooth. Its
+   surface stays inside the round cone a, b. section: unit vector of the shorter axis of its cross
+   sections, a right angle to the cone's, and the ratio of the two axes; bump: amplitude at a and b,
+   mm; the most that sdv_form_level may rise per mm; bumps per mm. */
+/* Of a corner of the lattice, in [-1, 1). */
+LAO_FN float sdv_noise_corner(lao_uint x, lao_uint y, lao_uint z) {
+    LAO_EXACT float r = 2.0f * lao_unit_float(lao_hash(x + lao_hash(y + lao_hash(z)))) - 1.0f;
+    return r;
+}
+LAO_FN lao_v4 sdv_noise_four(lao_uint x, lao_uint y, lao_uint z) {
+    return lao_v4_make(sdv_noise_corner(x, y, z), sdv_noise_corner(x + 1u, y, z),
+                       sdv_noise_corner(x, y + 1u, z), sdv_noise_corner(x + 1u, y + 1u, z));
+}
+/* Between two corners (x, to the fifth power: no creases) and its slope (y). */
+LAO_FN lao_v2 sdv_noise_fade(float f) {
+    LAO_EXACT float fade = f * f * f * (f * (f * 6.0f - 15.0f) + 10.0f);
+    LAO_EXACT float slope = 30.0f * f * f * (f * (f - 2.0f) + 1.0f);
+    return lao_v2_make(fade, slope);
+}
+/* Gradient (xyz) and value (w, in [-1, 1]) of value noise on the lattice of whole numbers. The
+   gradient is no longer than SDV_NOISE_SLOPE: 2 (corners) times 15/8 (fade). */
+#define SDV_NOISE_SLOPE 3.76f
+LAO_FN lao_v4 sdv_noise(lao_v3 p) {
+    lao_v3 low = lao_v3_make(lao_floor(lao_min(lao_max(p.x, -1.0e9f), 1.0e9f)),
+                             lao_floor(lao_min(lao_max(p.y, -1.0e9f), 1.0e9f)),
+                             lao_floor(lao_min(lao_max(p.z, -1.0e9f), 1.0e9f)));
+    lao_uint x = LAO_U(LAO_I(low.x));
+    lao_uint y = LAO_U(LAO_I(low.y));
+    lao_uint z = LAO_U(LAO_I(low.z));
+    lao_v3 part = lao_v3_sub(p, low);
+    lao_v2 u = sdv_noise_fade(lao_clamp01(part.x));
+    lao_v2 v = sdv_noise_fade(lao_clamp01(part.y));
+    lao_v2 w = sdv_noise_fade(lao_clamp01(part.z));
+    lao_v4 n = sdv_lattice_value(lao_v3_make(u.x, v.x, w.x), sdv_noise_four(x, y, z),
+                                 sdv_noise_four(x, y, z + 1u));
+    LAO_EXACT float gx = n.x * u.y;
+    LAO_EXACT float gy = n.y * v.y;
+    LAO_EXACT float gz = n.z * w.y;
+    return lao_v4_make(gx, gy, gz, n.w);
+}
+/* Space stretched along the shorter axis, so that cross sections are circles. */
+LAO_FN lao_v3 sdv_form_stretched(lao_v3 v, lao_v4 section) {
+    lao_v3 minor = lao_v3_make(section.x, section.y, section.z);
+    LAO_EXACT float by = lao_v3_dot(v, minor) * (1.0f / section.w - 1.0f);
+    return lao_v3_along(v, minor, by);
+}
+/* Below 0 inside the cone's form, 0 on its surface (w), and the gradient (xyz): the distance in
+   stretched space and the noise, inwards from the round cone. */
+LAO_FN lao_v4 sdv_form_level(lao_v3 p, lao_v4 a, lao_v4 b, lao_v4 section, lao_v4 bump) {
+    lao_v3 from = lao_v3_make(a.x, a.y, a.z);
+    lao_v3 q = lao_v3_add(from, sdv_form_stretched(lao_v3_sub(p, from), section));
+    sdv_cone_point c = sdv_cone_point_make(q, a, b);
+    lao_v3 g = sdv_round_cone_gradient(q, a, b);
+    LAO_EXACT float amplitude = bump.x + c.place * (bump.y - bump.x);
+    lao_v4 noise = lao_v4_make(0.0f, 0.0f, 0.0f, 0.0f);
+    if (amplitude > 0.0f) {
+        noise = sdv_noise(lao_v3_scale(p, bump.w));
+    }
+    LAO_EXACT float lift = 1.0f + noise.w;
+    LAO_EXACT float level = section.w * (c.distance + amplitude * lift);
+    if (c.place > 0.0f && c.place < 1.0f) { /* the amplitude changes along the cone */
+        LAO_EXACT float d = a.w - b.w;
+        LAO_EXACT float change = (bump.y - bump.x) * lift / (lao_v3_dot(c.axis, c.axis) - d * d);
+        g = lao_v3_along(g, lao_v3_along(c.axis, g, -d), change);
+    }
+    g = sdv_form_stretched(g, section);
+    LAO_EXACT float steep = amplitude * bump.w;
+    g = lao_v3_scale(lao_v3_along(g, lao_v3_make(noise.x, noise.y, noise.z), steep), section.w);
+    return lao_v4_make(g.x, g.y, g.z, level);
+}
+/* Outward normal (xyz), and the distance as far as level and gradient tell it (w). */
+LAO_FN lao_v4 sdv_form_estimate(lao_v3 p, lao_v4 a, lao_v4 b, lao_v4 section, lao_v4 bump) {
+    lao_v4 level = sdv_form_level(p, a, b, section, bump);
+    lao_v3 g = lao_v3_make(level.x, level.y, level.z);
+    LAO_EXACT float steep = lao_sqrt(lao_v3_dot(g, g));
+    LAO_EXACT float distance = level.w / lao_max(steep, 0.1f);
+    g = lao_v3_unit(g, sdv_round_cone_gradient(p, a, b));
+    return lao_v4_make(g.x, g.y, g.z, distance);
+}
+/* A bound of the distance that is 0 where that is, and 1-Lipschitz; round: sdv_round_cone. */
+LAO_FN float sdv_form_bound(float round, lao_v4 level, lao_v4 bump) {
+    LAO_EXACT float bound = level.w / bump.z;
+    return lao_max(round, bound);
+}
+/* sdv_near_add for a form. The ray meets the round cone first. */
+LAO_FN sdv_near sdv_near_form(sdv_near n, lao_v3 p, lao_v3 direction, lao_v4 a, lao_v4 b,
+                              lao_v4 section, lao_v4 bump, float cone) {
+    sdv_near r = n;
+    lao_v2 along = sdv_cone_along(p, direction, a, b);
+    if (along.x < n.distance || along.y < n.advance) {
+        float d = sdv_form_bound(along.x, sdv_form_level(p, a, b, section, bump), bump);
+        if (d < n.distance) {
+            r.distance = d;
+            r.cone = cone;
+        }
+        r.advance = lao_min(n.advance, lao_max(along.y, d));
+    }
+    return r;
+}
+/* sdv_minimum_add for a form: where the ray is nearest to the cone without bumps. */
+LAO_FN sdv_minimum sdv_minimum_form(sdv_minimum r, lao_v3 origin, lao_v3 direction, lao_v4 a,
+                                    lao_v4 b, lao_v4 section, lao_v4 bump, float low, float high) {
+    sdv_minimum n = r;
+    lao_v3 from = lao_v3_make(a.x, a.y, a.z);
+    lao_v3 o = lao_v3_add(from, sdv_form_stretched(lao_v3_sub(origin, from), section));
+    lao_v3 d = sdv_form_stretched(direction, section);
+    LAO_EXACT float shorter = 1.0f / lao_sqrt(lao_v3_dot(d, d));
+    LAO_EXACT float place = sdv_line_nearest(o, lao_v3_scale(d, shorter), a, b).y * shorter;
+    LAO_EXACT float t = lao_min(lao_max(place, low), high);
+    float distance = sdv_form_estimate(lao_v3_along(origin, direction, t), a, b, section, bump).w;
+    n.last = r.cone;
+    if (distance < r.d) {
+        n.d = distance;
+        n.t = t;
+    }
+    return n;
+}
 /* A lower bound of the distance to where the trilinear value is 0: no slope of it is above sqrt(3);
    outside, the shape is no nearer than the nearest place inside is to it. */
 LAO_FN float sdv_lattice_distance(sdv_lattice at, float value) {
@@ -1636,9 +1777,35 @@ LAO_FN float sdv_push_weight(sdv_mix parents, float own) {
 #define SDV_NEAR_MISS_NONE 2
 #define SDV_OUTLINE_PX 0
 #define SDV_HALO_FOOTPRINT 0.3f /* periods per pixel: where the void is steeper, marks end */
+/* A magic lens (Bier et al. 1993): a circle on the picture inside or outside which a set is drawn.
+ */
+#define SDV_LENS_NONE 0
+#define SDV_LENS_INSIDE 1
+#define SDV_LENS_OUTSIDE 2
+/* On which side of the circle a pixel's centre is; on it: inside. lens: middle, from the left and
+   the top, in widths and heights of the picture; radius in heights, less `rim` samples. x, y: in
+   samples, row 0 at the bottom; viewport: of lao_frame_uniforms. */
+LAO_FN float sdv_lens_part(lao_v3 lens, float rim, float x, float y, lao_v4 viewport) {
+    LAO_EXACT float right = x - lens.x * viewport.x;
+    LAO_EXACT float up = y - (1.0f - lens.y) * viewport.y;
+    LAO_EXACT float radius = lens.z * viewport.y - rim;
+    LAO_EXACT float beyond =
+        right * right + up * up - lao_max(radius, 0.0f) * lao_max(radius, 0.0f);
+    return beyond > 0.0f ? 2.0f : 1.0f;
+}
+/* Is a pixel on this part not drawn by a set of that lens_side? By arithmetic: drivers compile
+   anew for every value of a uniform that is branched on. */
+LAO_FN bool sdv_lens_hides(float side, float part) {
+    return side * lao_abs(side - part) > 0.5f;
+}
+/* Is a pixel that is drawn on the ring? part: of the circle inside the ring. */
+LAO_FN bool sdv_lens_rings(float side, float part) {
+    return side * part == 2.0f;
+}
 /* Pixels of the picture per mm at view depth z; scale, depth: of lao_frame_uniforms. */
 LAO_FN float sdv_zoom(lao_v4 scale, lao_v4 depth, float z, float supersampling) {
-    LAO_EXACT float across = (depth.w > 0.5f ? 1.0f : lao_max(z, 1.0e-6f)) * supersampling;
+    float apart = lao_max(z, 1.0e-6f);
+    LAO_EXACT float across = (depth.w > 0.5f ? 1.0f : apart) * supersampling;
     LAO_EXACT float r = lao_abs(scale.y) / across;
     return r;
 }
@@ -1690,20 +1857,18 @@ LAO_FN float sdv_joint_part(lao_v4 a, lao_v4 b, float radius) {
     LAO_EXACT float part = 2.0f - 2.0f * size / radius;
     return lao_clamp01(part);
 }
-/* What the cone at p has more than its part. */
-LAO_FN lao_v3 sdv_joint_start(lao_v3 p, lao_v4 a, lao_v4 b, lao_v2 reach) {
+/* What the cone at p, of this gradient, has more than its part. */
+LAO_FN lao_v3 sdv_joint_start(lao_v3 gradient, lao_v4 a, lao_v4 b, lao_v2 reach) {
     LAO_EXACT float rest = 1.0f - sdv_joint_part(a, b, reach.y);
-    return lao_v3_scale(sdv_round_cone_gradient(p, a, b), rest);
+    return lao_v3_scale(gradient, rest);
 }
-/* Adds a cone's gradient to those before, the less the farther its surface is. */
-LAO_FN lao_v3 sdv_joint_add(lao_v3 sum, lao_v3 p, lao_v4 a, lao_v4 b, lao_v2 reach) {
-    sdv_cone_point c = sdv_cone_point_make(p, a, b);
-    if (!(c.distance < reach.x)) {
-        return sum;
-    }
-    LAO_EXACT float part = 1.0f - lao_max(c.distance, 0.0f) / reach.x;
+/* Adds the gradient of a cone that is nearer than reach.x to those before, the less the farther its
+   surface is. */
+LAO_FN lao_v3 sdv_joint_add(lao_v3 sum, float distance, lao_v3 gradient, lao_v4 a, lao_v4 b,
+                            lao_v2 reach) {
+    LAO_EXACT float part = 1.0f - lao_max(distance, 0.0f) / reach.x;
     LAO_EXACT float weight = part * part * sdv_joint_part(a, b, reach.y);
-    return lao_v3_along(sum, sdv_round_cone_gradient(p, a, b), weight);
+    return lao_v3_along(sum, gradient, weight);
 }
 /* The mean of the gradients on the side of the surface's own normal, unit. */
 LAO_FN lao_v3 sdv_joint_normal(lao_v3 sum, lao_v3 normal) {
@@ -1784,7 +1949,8 @@ LAO_FN lao_v3 sdv_shadow_light(lao_m4 world, float x, float y) {
 }
 /* mm across a pixel at that depth. */
 LAO_FN float sdv_pixel_size(lao_v4 ray, float depth, float orthographic) {
-    LAO_EXACT float r = lao_abs(ray.y) * (orthographic > 0.5f ? 1.0f : lao_abs(depth));
+    float apart = lao_abs(depth);
+    LAO_EXACT float r = lao_abs(ray.y) * (orthographic > 0.5f ? 1.0f : apart);
     return r;
 }
 /* From pixel to pixel along an axis, on the side where depth changes less. */
@@ -3688,6 +3854,55 @@ static void sdv__ball_bounds(const lao_v4 *balls, uint32_t count, double low[3],
         }
     }
 }
+/* The array of a node attribute, where it has so many components. */
+static const float *sdv__node_values(const sdv_tree *tree, const char *name, uint32_t components) {
+    uint32_t i;
+    for (i = 0; i < tree->node_attribute_count; i++) {
+        const sdv_attribute *a = &tree->node_attributes[i];
+        if (strcmp(a->name, name) == 0 && (a->components ? a->components : 1) == components) {
+            return a->values;
+        }
+    }
+    return NULL;
+}
+/* Of the noise at a node, mm. */
+static float sdv__amplitude(const sdv_tree *tree, uint32_t node) {
+    const float *values = sdv__node_values(tree, SDV_UNCERTAINTY, 1);
+    float v = values ? values[node] : 0.0f;
+    return v > 0.0f ? lao_min(v, 0.75f * tree->nodes[node].w) : 0.0f;
+}
+static float sdv__ratio(const float *ratios, uint32_t node) {
+    float r = ratios ? ratios[node] : 1.0f;
+    return r > 0.0f ? lao_min(lao_max(r, 0.1f), 1.0f) : 1.0f;
+}
+/* The greatest amplitude of all nodes, mm. */
+static float sdv__most_amplitude(const sdv_tree *tree) {
+    float most = 0.0f;
+    uint32_t i;
+    for (i = 0; i < tree->node_count && sdv__node_values(tree, SDV_UNCERTAINTY, 1); i++) {
+        most = lao_max(most, sdv__amplitude(tree, i));
+    }
+    return most;
+}
+static bool sdv__has_forms(const sdv_tree *tree) {
+    const float *ratios = sdv__node_values(tree, SDV_SECTION_RATIO, 1);
+    uint32_t i;
+    for (i = 0; i < tree->node_count && ratios; i++) {
+        if (sdv__ratio(ratios, i) < 1.0f) {
+            return true;
+        }
+    }
+    return sdv__most_amplitude(tree) > 0.0f;
+}
+static void sdv__tree_bounds(const sdv_tree *tree, double low[3], double high[3]) {
+    double most = (double)sdv__most_amplitude(tree);
+    uint32_t i;
+    sdv__ball_bounds(tree->nodes, tree->node_count, low, high);
+    for (i = 0; i < 3; i++) {
+        low[i] -= most;
+        high[i] += most;
+    }
+}
 /* Cubic cells around all balls, and two more at every side. */
 static int sdv__grid_fit(const sdv_tree *tree, uint32_t resolution, sdv_grid *g) {
     double low[3], high[3], most = 0;
@@ -3696,7 +3911,7 @@ static int sdv__grid_fit(const sdv_tree *tree, uint32_t resolution, sdv_grid *g)
     if (resolution < 16 || resolution > SDV__AXIS) {
         return 0;
     }
-    sdv__ball_bounds(tree->nodes, tree->node_count, low, high);
+    sdv__tree_bounds(tree, low, high);
     for (k = 0; k < 3; k++) {
         most = high[k] - low[k] > most ? high[k] - low[k] : most;
     }
@@ -3735,7 +3950,7 @@ static int sdv__grid_frame(const sdv_tree *tree, const sdv_grid_desc *desc, sdv_
 static int sdv__grid_holds(const sdv_grid *g, const sdv_tree *tree) {
     double low[3], high[3];
     uint32_t k;
-    sdv__ball_bounds(tree->nodes, tree->node_count, low, high);
+    sdv__tree_bounds(tree, low, high);
     for (k = 0; k < 3; k++) {
         double origin = (double)sdv__v3_at(g->origin, k);
         double end = origin + (double)g->size[k] * (double)g->cell;
@@ -3758,8 +3973,83 @@ static uint32_t sdv__lone_count(const sdv_tree *tree) {
     return n;
 }
 static void sdv__cone_set(const sdv_tree *tree, const uint32_t *nodes, lao_v4 *cone) {
-    cone[0] = tree->nodes[nodes[0]];
-    cone[1] = tree->nodes[nodes[1]];
+    uint32_t k;
+    for (k = 0; k < 2; k++) {
+        cone[k] = tree->nodes[nodes[k]];
+        cone[k].w += sdv__amplitude(tree, nodes[k]);
+    }
+}
+/* ---- forms */
+static lao_v3 sdv__minor(const float *axes, uint32_t node) {
+    const lao_v3 z = lao_v3_make(0.0f, 0.0f, 1.0f);
+    const float *v = axes + 3 * (size_t)node;
+    return axes ? lao_v3_unit(lao_v3_make(v[0], v[1], v[2]), z) : z;
+}
+/* The mean of the nodes' sections, at a right angle to the cone. */
+static lao_v4 sdv__section(const sdv_tree *tree, const uint32_t *nodes, const lao_v4 *cone) {
+    const float *ratios = sdv__node_values(tree, SDV_SECTION_RATIO, 1);
+    const float *axes = sdv__node_values(tree, SDV_SECTION_AXIS, 3);
+    lao_v3 axis = lao_v3_make(cone[1].x - cone[0].x, cone[1].y - cone[0].y, cone[1].z - cone[0].z);
+    lao_v3 m = sdv__minor(axes, nodes[0]), n = sdv__minor(axes, nodes[1]);
+    float ratio = 0.5f * (sdv__ratio(ratios, nodes[0]) + sdv__ratio(ratios, nodes[1]));
+    float size = lao_v3_dot(axis, axis);
+    m = lao_v3_along(m, n, lao_v3_dot(m, n) < 0.0f ? -1.0f : 1.0f);
+    if (size > 0.0f) {
+        m = lao_v3_along(m, axis, -lao_v3_dot(m, axis) / size);
+    }
+    m = lao_v3_unit(m, sdv_perpendicular(axis));
+    return lao_v4_make(m.x, m.y, m.z, ratio);
+}
+/* The mean radius, and no less than twice the greatest amplitude: steeper bumps come off. */
+static float sdv__bump_size(const sdv_tree *tree) {
+    double sum = 0;
+    uint32_t i, n = 0;
+    if (tree->bump_size > 0.0f && tree->bump_size < SDV_FAR) {
+        return tree->bump_size;
+    }
+    for (i = 0; i < tree->node_count; i++) {
+        if (sdv__amplitude(tree, i) > 0.0f) {
+            sum += (double)tree->nodes[i].w;
+            n++;
+        }
+    }
+    return n ? lao_max((float)(sum / n), 2.0f * sdv__most_amplitude(tree)) : 1.0f;
+}
+/* How much sdv_form_level rises per mm at most: by 1, by the change of the amplitude along the
+   cone, under noise of up to 2, and by the noise. */
+static lao_v4 sdv__bump(const sdv_tree *tree, const uint32_t *nodes, const lao_v4 *cone,
+                        float ratio, float size) {
+    float a = sdv__amplitude(tree, nodes[0]), b = sdv__amplitude(tree, nodes[1]);
+    lao_v3 axis = lao_v3_make(cone[1].x - cone[0].x, cone[1].y - cone[0].y, cone[1].z - cone[0].z);
+    double s = sqrt((double)lao_v3_dot(axis, axis)), d = (double)(cone[0].w - cone[1].w);
+    double rise = 1 + (double)(ratio * lao_max(a, b) * SDV_NOISE_SLOPE / size);
+    if (s > fabs(d)) {
+        rise += 2 * fabs((double)(a - b)) / sqrt((s - d) * (s + d));
+    }
+    return lao_v4_make(a, b, (float)(rise * (1 + 1e-5)), 1.0f / size);
+}
+static void sdv__forms_fill(const sdv_tree *tree, sdv_grid *g) {
+    uint32_t i;
+    float size;
+    if (!g->forms) {
+        return;
+    }
+    size = sdv__bump_size(tree);
+    for (i = 0; i < g->cone_count; i++) {
+        const uint32_t *nodes = g->cone_nodes + 2 * (size_t)i;
+        const lao_v4 *cone = g->cones + 2 * (size_t)i;
+        lao_v4 *form = g->forms + 2 * (size_t)i;
+        form[0] = sdv__section(tree, nodes, cone);
+        form[1] = sdv__bump(tree, nodes, cone, form[0].w, size);
+    }
+}
+/* Memory for cones, with forms behind them where the tree has any. */
+static void sdv__cones_take(const sdv_tree *tree, sdv_grid *g) {
+    uint64_t texels = 2 * (uint64_t)g->cone_count;
+    bool forms = sdv__has_forms(tree);
+    g->cones = (lao_v4 *)sdv__take(&g->allocator, forms ? 2 * texels : texels, sizeof *g->cones);
+    g->forms = g->cones && forms ? g->cones + texels : NULL;
+    g->cone_nodes = (uint32_t *)sdv__take(&g->allocator, texels, sizeof *g->cone_nodes);
 }
 static void sdv__cones_fill(const sdv_tree *tree, sdv_grid *g) {
     uint32_t i, n = tree->segment_count;
@@ -3777,6 +4067,7 @@ static void sdv__cones_fill(const sdv_tree *tree, sdv_grid *g) {
     for (i = 0; i < n; i++) {
         sdv__cone_set(tree, g->cone_nodes + 2 * (size_t)i, g->cones + 2 * (size_t)i);
     }
+    sdv__forms_fill(tree, g);
 }
 
 /* ---- which cells a cone may be listed in: plane by plane, row by row. The balls of a cone have
@@ -4238,9 +4529,7 @@ SDV_API lao_result sdv_grid_build(const sdv_host *host, const sdv_tree *tree,
     g.layer = (uint32_t *)sdv__take(&g.allocator, g.cell_count, sizeof *g.layer);
     g.occupied = (uint32_t *)sdv__take(
         &g.allocator, (uint64_t)sdv__words(&g) * g.size[1] * g.size[2], sizeof *g.occupied);
-    g.cones = (lao_v4 *)sdv__take(&g.allocator, 2 * (uint64_t)g.cone_count, sizeof *g.cones);
-    g.cone_nodes =
-        (uint32_t *)sdv__take(&g.allocator, 2 * (uint64_t)g.cone_count, sizeof *g.cone_nodes);
+    sdv__cones_take(tree, &g);
     first = (uint32_t *)sdv__take(&g.allocator, SDV__AXIS + 1, sizeof *first);
     layer_ids = (uint64_t *)sdv__take(&g.allocator, SDV__AXIS, sizeof *layer_ids);
     if (g.cells && g.layer && g.occupied && g.cones && g.cone_nodes && first && layer_ids) {
@@ -4783,6 +5072,7 @@ static lao_result sdv__grid_change(const sdv_host *host, const sdv_tree *tree,
             work.host = &silent;
         }
         sdv__change_apply(&work, &c);
+        sdv__forms_fill(tree, grid);
         grid->id_count = (uint32_t)sum;
         grid->rebuilt = 0;
     }
@@ -4850,12 +5140,29 @@ SDV_API lao_result sdv_grid_update(const sdv_host *host, const sdv_tree *tree,
 }
 
 /* ---- reading */
+/* Of p to the forms of a cell's list; a bound. */
+static float sdv__form_distance(const sdv_grid *g, const lao_v4 *cell, lao_v3 p, uint32_t *cone) {
+    sdv_near n = sdv_near_start(0.0f);
+    uint32_t i;
+    if (!g->forms) {
+        return sdv__list_distance(g, cell, p, cone);
+    }
+    for (i = 0; i < (uint32_t)cell->w; i++) {
+        float id = g->ids[(size_t)cell->z + i];
+        const lao_v4 *c = g->cones + 2 * (size_t)id, *form = g->forms + 2 * (size_t)id;
+        n = sdv_near_form(n, p, lao_v3_make(0.0f, 0.0f, 1.0f), c[0], c[1], form[0], form[1], id);
+    }
+    if (n.cone >= 0.0f) {
+        *cone = (uint32_t)n.cone;
+    }
+    return n.distance;
+}
 SDV_API float sdv_grid_distance(const sdv_grid *grid, lao_v3 p, uint32_t *cone) {
     const lao_v4 *cell = grid->cells + sdv_cell_at(sdv__grid_box(grid), p);
     uint32_t nearest = SDV_NONE;
     float d;
     cell = cell->w > 0.0f ? cell : grid->cells + (size_t)cell->y;
-    d = sdv__list_distance(grid, cell, p, &nearest);
+    d = sdv__form_distance(grid, cell, p, &nearest);
     if (cone) {
         *cone = nearest;
     }
@@ -4888,9 +5195,33 @@ static sdv_near sdv__near_at(const sdv_grid *g, const lao_v4 *cell, lao_v3 p, la
     for (i = 0; i < (uint32_t)from->w; i++) {
         float id = g->ids[(size_t)from->z + i];
         const lao_v4 *cone = g->cones + 2 * (size_t)id;
-        n = sdv_near_add(n, p, direction, cone[0], cone[1], id);
+        if (g->forms) {
+            const lao_v4 *form = g->forms + 2 * (size_t)id;
+            n = sdv_near_form(n, p, direction, cone[0], cone[1], form[0], form[1], id);
+        } else {
+            n = sdv_near_add(n, p, direction, cone[0], cone[1], id);
+        }
     }
     return n;
+}
+static sdv_minimum sdv__minimum_add(const sdv_grid *g, const sdv_ray *ray, sdv_minimum found,
+                                    float low, float high) {
+    const lao_v4 *ends = g->cones + 2 * (size_t)found.cone;
+    const lao_v4 *form = g->forms ? g->forms + 2 * (size_t)found.cone : NULL;
+    return form ? sdv_minimum_form(found, ray->origin, ray->direction, ends[0], ends[1], form[0],
+                                   form[1], low, high)
+                : sdv_minimum_add(found, ray->origin, ray->direction, ends[0], ends[1], low, high);
+}
+/* Outward normal of a cone (xyz) and its distance (w), of a form as far as that can be told. */
+static lao_v4 sdv__estimate(const sdv_grid *g, uint32_t cone, lao_v3 p) {
+    const lao_v4 *ends = g->cones + 2 * (size_t)cone;
+    lao_v3 n;
+    if (g->forms) {
+        const lao_v4 *form = g->forms + 2 * (size_t)cone;
+        return sdv_form_estimate(p, ends[0], ends[1], form[0], form[1]);
+    }
+    n = sdv_round_cone_gradient(p, ends[0], ends[1]);
+    return lao_v4_make(n.x, n.y, n.z, sdv_round_cone(p, ends[0], ends[1]));
 }
 static const lao_v4 *sdv__cell_at(const sdv_grid *g, lao_v3 p) {
     return g->cells + sdv_cell_at(sdv__grid_box(g), p);
@@ -4903,9 +5234,8 @@ static sdv_march sdv__minimum(const sdv_grid *g, const sdv_ray *ray, sdv_march m
     sdv_minimum found = sdv_minimum_start(cone);
     int i;
     for (i = 0; i < SDV_MINIMUM_ROUNDS && found.cone >= 0.0f; i++) {
-        const lao_v4 *ends = g->cones + 2 * (size_t)found.cone;
         lao_v3 p;
-        found = sdv_minimum_add(found, ray->origin, ray->direction, ends[0], ends[1], low, high);
+        found = sdv__minimum_add(g, ray, found, low, high);
         p = lao_v3_along(ray->origin, ray->direction, found.t);
         found = sdv_minimum_next(found, sdv__near_at(g, sdv__cell_at(g, p), p, ray->direction));
     }
@@ -4914,9 +5244,7 @@ static sdv_march sdv__minimum(const sdv_grid *g, const sdv_ray *ray, sdv_march m
 
 static sdv_march sdv__note(const sdv_grid *g, const sdv_ray *ray, sdv_march m, sdv_near n) {
     if (n.cone >= 0.0f) {
-        const lao_v4 *ends = g->cones + 2 * (size_t)n.cone;
-        m = sdv_march_note(m, sdv_minimum_add(sdv_minimum_start(n.cone), ray->origin,
-                                              ray->direction, ends[0], ends[1], 0.0f, SDV_FAR));
+        m = sdv_march_note(m, sdv__minimum_add(g, ray, sdv_minimum_start(n.cone), 0.0f, SDV_FAR));
     }
     return m;
 }
@@ -4946,16 +5274,17 @@ static void sdv__land(const sdv_grid *g, const sdv_ray *ray, const sdv_march *m,
     for (i = 0; i <= SDV_POLISH_ROUNDS; i++) {
         lao_v3 p = lao_v3_along(ray->origin, ray->direction, t);
         sdv_near n = sdv__near_at(g, sdv__cell_at(g, p), p, ray->direction);
-        const lao_v4 *ends = g->cones + 2 * (size_t)n.cone;
+        lao_v4 there;
         if (lao_abs(n.distance) > off) {
             break;
         }
         off = lao_abs(n.distance);
-        gradient = sdv_round_cone_gradient(p, ends[0], ends[1]);
+        there = sdv__estimate(g, (uint32_t)n.cone, p);
+        gradient = lao_v3_make(there.x, there.y, there.z);
         hit->position = p;
         hit->cone = (uint32_t)n.cone;
         hit->t = t;
-        t = sdv_polish(t, n.distance, gradient, ray->direction, g->cell);
+        t = sdv_polish(t, there.w, gradient, ray->direction, g->cell);
     }
     hit->normal = m->inside > 0.5f ? lao_v3_scale(gradient, -1.0f) : gradient;
     hit->inside = m->inside > 0.5f;
@@ -5002,7 +5331,7 @@ SDV_API void sdv_trace(const sdv_grid *grid, const sdv_ray *ray, sdv_hit *hit) {
 /* A lower bound of the tree's distance, exact close to the surface and inside. */
 static float sdv__tree_bound(const sdv_grid *g, lao_v3 p, uint32_t *cone) {
     const lao_v4 *cell = sdv__cell_at(g, p);
-    float least = cell->w > 0.0f ? sdv__list_distance(g, cell, p, cone) : SDV_FAR;
+    float least = cell->w > 0.0f ? sdv__form_distance(g, cell, p, cone) : SDV_FAR;
     return sdv_tree_bound(least, cell->w > 0.0f, cell->z, sdv_box_distance(p, sdv__grid_box(g)),
                           g->cell);
 }
@@ -5052,10 +5381,12 @@ static sdv_solid sdv__solid_at(const sdv_grid *g, const sdv_shapes *shapes, lao_
 }
 static lao_v3 sdv__solid_gradient(const sdv_grid *g, const sdv_shapes *shapes, const sdv_solid *s,
                                   lao_v3 p, uint32_t cone) {
+    lao_v4 there;
     if (s->part >= 0) {
         return lao_v3_scale(sdv__shape_gradient(shapes, s->part, p), s->side);
     }
-    return sdv_round_cone_gradient(p, g->cones[2 * (size_t)cone], g->cones[2 * (size_t)cone + 1]);
+    there = sdv__estimate(g, cone, p);
+    return lao_v3_make(there.x, there.y, there.z);
 }
 static void sdv__solid_land(const sdv_grid *g, const sdv_shapes *shapes, const sdv_ray *ray,
                             float t, sdv_hit *hit, uint32_t *shape) {
@@ -5186,14 +5517,19 @@ SDV_API lao_v3 sdv_smooth_normal(const sdv_grid *grid, lao_v3 p, uint32_t cone, 
                                  float smoothness) {
     const lao_v4 *cell = sdv__cell_at(grid, p), *own = grid->cones + 2 * (size_t)cone;
     lao_v2 reach = sdv_joint_reach(p, own[0], own[1], smoothness, grid->cell);
-    lao_v3 sum = sdv_joint_start(p, own[0], own[1], reach);
+    lao_v4 at = sdv__estimate(grid, cone, p);
+    lao_v3 sum = sdv_joint_start(lao_v3_make(at.x, at.y, at.z), own[0], own[1], reach);
     uint32_t i;
     if (!(reach.x > 0.0f)) {
         return normal;
     }
     for (i = 0; i < (uint32_t)cell->w; i++) {
-        const lao_v4 *ends = grid->cones + 2 * (size_t)grid->ids[(size_t)cell->z + i];
-        sum = sdv_joint_add(sum, p, ends[0], ends[1], reach);
+        uint32_t other = (uint32_t)grid->ids[(size_t)cell->z + i];
+        const lao_v4 *ends = grid->cones + 2 * (size_t)other;
+        at = sdv__estimate(grid, other, p);
+        if (at.w < reach.x) {
+            sum = sdv_joint_add(sum, at.w, lao_v3_make(at.x, at.y, at.z), ends[0], ends[1], reach);
+        }
     }
     return sdv_joint_normal(sum, normal);
 }
@@ -5204,7 +5540,9 @@ SDV_API float sdv_openness(const sdv_grid *grid, const sdv_shapes *shapes, lao_v
     for (i = 0; i < SDV_OPEN_SAMPLES && reach > 0.0f; i++) {
         float place = sdv_open_place(reach, i);
         lao_v3 q = lao_v3_along(p, normal, place);
-        float d = sdv_grid_distance(grid, q, NULL);
+        uint32_t cone = 0;
+        float d = sdv_grid_distance(grid, q, &cone);
+        d = grid->forms ? sdv__estimate(grid, cone, q).w : d;
         d = shapes ? sdv__solid_of(shapes, d, q, false).distance : d;
         closed = sdv_open_add(closed, inside ? -d : d, place, i);
     }
@@ -5711,7 +6049,7 @@ SDV_API lao_result sdv_pull_push(const sdv_host *host, const sdv_pull_push_desc 
 
 static const lao_buffer_row sdv__buffers[] = {
     {"vessel_box", LAO_FORMAT_RGBA32F}, {"vessel_cells", LAO_FORMAT_RGBA32F}, {"vessel_ids", LAO_FORMAT_R32F},
-    {"vessel_cones", LAO_FORMAT_RGBA32F}, {"vessel_colors", LAO_FORMAT_RGBA8},
+    {"vessel_cones", LAO_FORMAT_RGBA32F}, {"vessel_forms", LAO_FORMAT_RGBA32F}, {"vessel_colors", LAO_FORMAT_RGBA8},
     {"vessel_shapes", LAO_FORMAT_RGBA32F}, {"vessel_fields", LAO_FORMAT_R32F},
     {"vessel_vertices", LAO_FORMAT_RGBA32F}, {"vessel_triangles", LAO_FORMAT_RGBA32F},
     {"vessel_pattern", LAO_FORMAT_R32F}
@@ -6046,7 +6384,11 @@ static void sdv__object_grid(sdv_object *object, const sdv_grid *grid) {
         sdv__object_buffer(object, "vessel_cells", grid->cells, grid->cell_count);
         sdv__object_buffer(object, "vessel_ids", grid->ids, grid->id_count);
     }
-    sdv__object_buffer(object, "vessel_cones", grid->cones, 2 * grid->cone_count);
+    sdv__object_buffer(object, "vessel_cones", grid->cones,
+                       (grid->forms ? 4 : 2) * grid->cone_count);
+    if (grid->forms) {
+        sdv__object_buffer(object, "vessel_forms", grid->forms, 1);
+    }
     object->desc.item_count = grid->cone_count;
     for (i = 0; i < grid->cone_count * (size_t)2; i++) {
         const lao_v4 *ball = &grid->cones[i];
@@ -6201,9 +6543,7 @@ static lao_result sdv__grid_cones(const sdv_host *host, const sdv_tree *tree,
         return sdv__fail(host, SDV_LOG_GRID_CELLS, "%u x %u x %u", g->size[0], g->size[1],
                          g->size[2]);
     }
-    g->cones = (lao_v4 *)sdv__take(&g->allocator, 2 * (uint64_t)g->cone_count, sizeof *g->cones);
-    g->cone_nodes =
-        (uint32_t *)sdv__take(&g->allocator, 2 * (uint64_t)g->cone_count, sizeof *g->cone_nodes);
+    sdv__cones_take(tree, g);
     if (!g->cones || !g->cone_nodes) {
         sdv_grid_free(g);
         return sdv__fail(host, SDV_LOG_MEMORY, "a grid's %u cones", g->cone_count);
@@ -6344,7 +6684,7 @@ static lao_result sdv__object_nearest(const sdv_host *host, sdv_object *object) 
     for (i = 0; i < object->desc.buffer_count; i++) {
         if (strcmp(object->buffers[i].name, "vessel_cones") == 0) {
             cones = (const lao_v4 *)object->buffers[i].data;
-            count = object->buffers[i].texel_count / 2;
+            count = (uint32_t)object->box[1].w;
         }
     }
     if (!wanted || !cones) {

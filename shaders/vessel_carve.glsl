@@ -10,6 +10,8 @@ LAO_TEX(7, sampler2D, lists)
 LAO_CONSTANT(0, lao_constant_near_miss)
 LAO_CONSTANT(1, lao_constant_supersampling)
 LAO_CONSTANT(2, lao_constant_has_vessel_cells)
+LAO_CONSTANT(3, lao_constant_parameterization)
+LAO_CONSTANT(4, lao_constant_has_vessel_forms)
 
 LAO_OUT(0, vec4, out_position) /* world, mm; number of the cone, -1: nothing was hit, -2: a shape */
 LAO_OUT(1, vec4, out_normal)   /* world, towards the viewer; least distance of a near miss, mm */
@@ -22,20 +24,17 @@ struct solid_sample {
     sdv_solid solid;
     float cone;
 };
-solid_sample solid_at(sdv_box box, lao_v3 p) {
+solid_sample solid_at(sdv_box b, lao_v3 p) {
     solid_sample r;
-    vec4 cell = cell_fetch(sdv_cell_at(box, p));
+    vec4 cell = cell_fetch(sdv_cell_at(b, p));
     float least = SDV_FAR;
     r.cone = -1.0;
-    for (int i = 0; i < int(cell.w); i++) {
-        float id = id_fetch(int(cell.z) + i);
-        float d = sdv_round_cone(p, texelFetch(cones, 2 * int(id)), texelFetch(cones, 2 * int(id) + 1));
-        if (d < least) {
-            least = d;
-            r.cone = id;
-        }
+    if (cell.w > 0.0) {
+        sdv_near n = near_in(b, cell, p, lao_v3_make(0.0, 0.0, 1.0));
+        least = n.distance;
+        r.cone = n.cone;
     }
-    sdv_solid tree = sdv_solid_start(sdv_tree_bound(least, cell.w > 0.0, cell.z, sdv_box_distance(p, box), box.cell));
+    sdv_solid tree = sdv_solid_start(sdv_tree_bound(least, cell.w > 0.0, cell.z, sdv_box_distance(p, b), b.cell));
     r.solid = sdv_solid_add_all(shapes, fields, tree, p, true);
     return r;
 }
@@ -73,8 +72,7 @@ void land(sdv_box b, lao_v3 origin, lao_v3 direction, float start, bool inside) 
             gradient = lao_v3_scale(sdv_shape_gradient_at(fields, sdv_shape_fetch(shapes, s.solid.part), p), s.solid.side);
             out_position = vec4(p, -2.0);
         } else {
-            int at = 2 * int(s.cone);
-            gradient = sdv_round_cone_gradient(p, texelFetch(cones, at), texelFetch(cones, at + 1));
+            gradient = estimate_at(p, s.cone).xyz;
             out_position = vec4(p, s.cone);
         }
         out_normal.xyz = inside ? lao_v3_scale(gradient, -1.0) : gradient;
@@ -86,6 +84,12 @@ void land(sdv_box b, lao_v3 origin, lao_v3 direction, float start, bool inside) 
 
 void main() {
     ivec2 pixel = LAO_PIXEL;
+    out_position = vec4(0.0, 0.0, 0.0, -1.0);
+    out_normal = vec4(0.0, 0.0, 0.0, SDV_FAR);
+    out_ray = vec4(0.0);
+    if (lao_constant_parameterization == 0 && sdv_is_hidden(pixel)) { /* else the void is filled from all */
+        return;
+    }
     lao_v2 slope = lao_pixel_slope(lao_frame.ray, float(pixel.x) + 0.5, float(pixel.y) + 0.5);
     lao_v3 origin = lao_ray_origin(lao_frame.world, slope, lao_frame.depth.w);
     lao_v3 direction = lao_ray_direction(lao_frame.world, slope, lao_frame.depth.w);
@@ -103,7 +107,6 @@ void main() {
     float steps = 0.0;
     bool inside = false;
     bool hit = false;
-    out_position = vec4(0.0, 0.0, 0.0, -1.0);
     for (int i = 0; i < SDV_MAX_STEPS; i++) {
         if (!(t <= span.y) || hit) {
             break;

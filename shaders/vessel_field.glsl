@@ -12,9 +12,24 @@ float id_fetch(int i) {
     }
     return texelFetch(lists, sdv_item(i), 0).x;
 }
+/* Where the form of a cone is, in the buffer of the cones, behind all of them. */
+int form_at(float cone) {
+    return 2 * int(texelFetch(box, 1).w) + 2 * int(cone);
+}
+/* Outward normal of a cone (xyz) and its distance (w), of a form as far as that can be told. */
+vec4 estimate_at(lao_v3 p, float cone) {
+    int at = 2 * int(cone);
+    vec4 a = texelFetch(cones, at);
+    vec4 b = texelFetch(cones, at + 1);
+    if (lao_constant_has_vessel_forms != 0) {
+        int form = form_at(cone);
+        return sdv_form_estimate(p, a, b, texelFetch(cones, form), texelFetch(cones, form + 1));
+    }
+    return vec4(sdv_round_cone_gradient(p, a, b), sdv_round_cone(p, a, b));
+}
 /* One sample: from the list of the cell at p, or of the nearest cell that has one. */
-sdv_near near_in(sdv_box box, vec4 cell, lao_v3 p, lao_v3 direction) {
-    sdv_near n = sdv_near_start(sdv_near_reach(box.cell));
+sdv_near near_in(sdv_box b, vec4 cell, lao_v3 p, lao_v3 direction) {
+    sdv_near n = sdv_near_start(sdv_near_reach(b.cell));
     vec4 from = cell;
     if (!(cell.w > 0.0)) {
         from = cell_fetch(int(cell.y));
@@ -24,14 +39,20 @@ sdv_near near_in(sdv_box box, vec4 cell, lao_v3 p, lao_v3 direction) {
     for (int i = 0; i < count; i++) {
         float id = id_fetch(first + i);
         int at = 2 * int(id);
-        n = sdv_near_add(n, p, direction, texelFetch(cones, at), texelFetch(cones, at + 1), id);
+        if (lao_constant_has_vessel_forms != 0) {
+            int form = form_at(id);
+            n = sdv_near_form(n, p, direction, texelFetch(cones, at), texelFetch(cones, at + 1), texelFetch(cones, form),
+                              texelFetch(cones, form + 1), id);
+        } else {
+            n = sdv_near_add(n, p, direction, texelFetch(cones, at), texelFetch(cones, at + 1), id);
+        }
     }
     return n;
 }
-sdv_near near_at(sdv_box box, lao_v3 p, lao_v3 direction) {
-    return near_in(box, cell_fetch(sdv_cell_at(box, p)), p, direction);
+sdv_near near_at(sdv_box b, lao_v3 p, lao_v3 direction) {
+    return near_in(b, cell_fetch(sdv_cell_at(b, p)), p, direction);
 }
 /* Signed distance of the tree at p. */
-float tree_distance_in(sdv_box box, vec4 cell, lao_v3 p) {
-    return near_in(box, cell, p, lao_v3_make(0.0, 0.0, 1.0)).distance;
+float tree_distance_in(sdv_box b, vec4 cell, lao_v3 p) {
+    return near_in(b, cell, p, lao_v3_make(0.0, 0.0, 1.0)).distance;
 }

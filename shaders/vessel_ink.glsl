@@ -23,6 +23,7 @@ LAO_CONSTANT(4, lao_constant_variant) /* 1: with shapes; 2: not a tree */
 LAO_CONSTANT(5, lao_constant_mark_style)
 LAO_CONSTANT(6, lao_constant_field_shadow)
 LAO_CONSTANT(7, lao_constant_has_vessel_cells)
+LAO_CONSTANT(8, lao_constant_has_vessel_forms)
 
 LAO_OUT(0, vec4, out_ink) /* white that is left; the rest in it of what was shown before (sdv_ink_rest) */
 

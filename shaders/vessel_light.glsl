@@ -9,7 +9,12 @@ float combined(float d, lao_v3 p, bool bound) {
 }
 /* Signed distance at p, from the list of its cell. */
 float field_at(sdv_box b, lao_v3 p) {
-    return combined(tree_distance_in(b, cell_fetch(sdv_cell_at(b, p)), p), p, false);
+    sdv_near near = near_at(b, p, lao_v3_make(0.0, 0.0, 1.0));
+    float d = near.distance;
+    if (lao_constant_has_vessel_forms != 0) {
+        d = estimate_at(p, near.cone).w;
+    }
+    return combined(d, p, false);
 }
 
 /* Openness of p along its normal: sdv_openness; from within a vessel the room inside counts. */
@@ -33,10 +38,14 @@ lao_v3 smooth_normal(sdv_box b, lao_v3 p, float cone, lao_v3 n) {
     if (!(reach.x > 0.0)) {
         return n;
     }
-    lao_v3 sum = sdv_joint_start(p, texelFetch(cones, own), texelFetch(cones, own + 1), reach);
+    lao_v3 sum = sdv_joint_start(estimate_at(p, cone).xyz, texelFetch(cones, own), texelFetch(cones, own + 1), reach);
     for (int i = 0; i < count; i++) {
-        int at = 2 * int(id_fetch(int(cell.z) + i));
-        sum = sdv_joint_add(sum, p, texelFetch(cones, at), texelFetch(cones, at + 1), reach);
+        float id = id_fetch(int(cell.z) + i);
+        int at = 2 * int(id);
+        vec4 there = estimate_at(p, id);
+        if (there.w < reach.x) {
+            sum = sdv_joint_add(sum, there.w, there.xyz, texelFetch(cones, at), texelFetch(cones, at + 1), reach);
+        }
     }
     return sdv_joint_normal(sum, n);
 }

@@ -8,6 +8,8 @@ LAO_TEX(5, sampler2D, lists)
 LAO_CONSTANT(0, lao_constant_near_miss)
 LAO_CONSTANT(1, lao_constant_supersampling)
 LAO_CONSTANT(2, lao_constant_has_vessel_cells)
+LAO_CONSTANT(3, lao_constant_parameterization)
+LAO_CONSTANT(4, lao_constant_has_vessel_forms)
 
 LAO_OUT(0, vec4, out_position) /* world, mm; number of the cone, -1: nothing was hit */
 LAO_OUT(1, vec4, out_normal)   /* world, towards the viewer; least distance of a near miss, mm */
@@ -16,6 +18,17 @@ LAO_OUT(2, vec4, out_ray)      /* mm along the ray: hit, near miss; samples; 1: 
 #ifdef LAO_FRAGMENT
 LAO_INCLUDE vessel_field.glsl
 
+sdv_minimum minimum_add(sdv_minimum found, lao_v3 origin, lao_v3 direction, float low, float high) {
+    int at = 2 * int(found.cone);
+    vec4 a = texelFetch(cones, at);
+    vec4 b = texelFetch(cones, at + 1);
+    if (lao_constant_has_vessel_forms != 0) {
+        int form = form_at(found.cone);
+        return sdv_minimum_form(found, origin, direction, a, b, texelFetch(cones, form), texelFetch(cones, form + 1), low,
+                                high);
+    }
+    return sdv_minimum_add(found, origin, direction, a, b, low, high);
+}
 /* Refines a local minimum whose sample was nearest to `cone`. */
 sdv_march minimum(sdv_box b, lao_v3 origin, lao_v3 direction, sdv_march m, float cone, float low, float high) {
     sdv_minimum found = sdv_minimum_start(cone);
@@ -23,8 +36,7 @@ sdv_march minimum(sdv_box b, lao_v3 origin, lao_v3 direction, sdv_march m, float
         if (found.cone < 0.0) {
             break;
         }
-        int at = 2 * int(found.cone);
-        found = sdv_minimum_add(found, origin, direction, texelFetch(cones, at), texelFetch(cones, at + 1), low, high);
+        found = minimum_add(found, origin, direction, low, high);
         found = sdv_minimum_next(found, near_at(b, lao_v3_along(origin, direction, found.t), direction));
     }
     return sdv_march_minimum(m, found);
@@ -34,9 +46,7 @@ sdv_march note(lao_v3 origin, lao_v3 direction, sdv_march m, sdv_near n) {
     if (n.cone < 0.0) {
         return m;
     }
-    int at = 2 * int(n.cone);
-    return sdv_march_note(m, sdv_minimum_add(sdv_minimum_start(n.cone), origin, direction, texelFetch(cones, at),
-                                             texelFetch(cones, at + 1), 0.0, SDV_FAR));
+    return sdv_march_note(m, minimum_add(sdv_minimum_start(n.cone), origin, direction, 0.0, SDV_FAR));
 }
 
 /* The least distance of a ray that hits nothing. */
@@ -69,17 +79,23 @@ void land(sdv_box b, lao_v3 origin, lao_v3 direction, sdv_march m) {
             break;
         }
         off = lao_abs(n.distance);
-        int at = 2 * int(n.cone);
-        lao_v3 gradient = sdv_round_cone_gradient(p, texelFetch(cones, at), texelFetch(cones, at + 1));
+        vec4 there = estimate_at(p, n.cone);
+        lao_v3 gradient = there.xyz;
         out_position = vec4(p, n.cone);
         out_normal.xyz = m.inside > 0.5 ? lao_v3_scale(gradient, -1.0) : gradient;
         out_ray.x = t;
-        t = sdv_polish(t, n.distance, gradient, direction, b.cell);
+        t = sdv_polish(t, there.w, gradient, direction, b.cell);
     }
 }
 
 void main() {
     ivec2 pixel = LAO_PIXEL;
+    out_position = vec4(0.0, 0.0, 0.0, -1.0);
+    out_normal = vec4(0.0, 0.0, 0.0, SDV_FAR);
+    out_ray = vec4(0.0);
+    if (lao_constant_parameterization == 0 && sdv_is_hidden(pixel)) { /* else the void is filled from all */
+        return;
+    }
     lao_v2 slope = lao_pixel_slope(lao_frame.ray, float(pixel.x) + 0.5, float(pixel.y) + 0.5);
     lao_v3 origin = lao_ray_origin(lao_frame.world, slope, lao_frame.depth.w);
     lao_v3 direction = lao_ray_direction(lao_frame.world, slope, lao_frame.depth.w);
@@ -118,8 +134,7 @@ void main() {
         m.d_min = SDV_FAR;
         m = minimum(b, origin, direction, m, m.low_cone, 0.0, SDV_FAR);
     }
-    out_position = vec4(0.0, 0.0, 0.0, -1.0);
-    out_normal = vec4(0.0, 0.0, 0.0, m.d_min);
+    out_normal.w = m.d_min;
     out_ray = vec4(0.0, m.t_min, m.steps, m.inside);
     if (m.state == SDV_MARCH_HITS) {
         land(b, origin, direction, m);

@@ -84,6 +84,14 @@ typedef struct cli_target_option {
     bool path;
     const char *text;
 } cli_target_option;
+/* A magic lens: where another style, or another tree, shows. */
+typedef struct cli_lens_option {
+    const char *text; /* NULL: none; else a ball, as the text of a shape, or a circle */
+    double circle[3]; /* middle from the left and the top and radius, in widths and heights */
+    bool is_circle;   /* of the picture */
+    const char *style, *tree, *color; /* NULL: not given */
+} cli_lens_option;
+
 typedef struct cli_vessel_options {
     const char *style, *tree, *cameras, *weight, *surface, *pattern, *field;
     cli_target_option targets[CLI_TARGETS]; /* several only with `link` */
@@ -95,8 +103,12 @@ typedef struct cli_vessel_options {
     uint32_t margin;         /* pixels */
     bool last;
     uint32_t grid, nodes; /* cells; nodes of the embedded tree; 0: not given */
+    double section;       /* of all nodes; negative: not given */
+    const char *uncertainty;
+    double bump_size; /* mm; negative: not given */
     cli_shape_option shapes[CLI_SHAPES];
     uint32_t shape_count;
+    cli_lens_option lens;
 } cli_vessel_options;
 
 /* Of a mesh, for any device: vertices are counted in floats. */
@@ -105,10 +117,10 @@ enum { CLI_MOST_TRIANGLES = 1 << 24 };
 /* What `surface` does with a mesh. */
 typedef struct cli_surface_options {
     const char *lines, *vertices, *baseline, *focus, *value, *flip, *colormap;
-    double focus_at[4]; /* two numbers (depths, mm) or four (a ball) */
-    int focus_numbers;  /* 0: none */
+    double focus_at[4];                          /* two numbers (depths, mm) or four (a ball) */
+    int focus_numbers;                           /* 0: none */
     uint32_t smooth, subdivide, triangles, grid; /* 0: not given */
-    double brightness;  /* mm; 0: from the mesh; negative: not given */
+    double brightness;                           /* mm; 0: from the mesh; negative: not given */
     double contours[2]; /* mm, width of contours and suggestive contours; 0: none */
     double threshold;   /* 1/mm^2, of the latter; negative: not given */
     bool normals;

@@ -95,6 +95,51 @@ static const sdv_attribute *find_attribute(const sdv_tree *tree, const char *nam
     return NULL;
 }
 
+/* ---- forms ------------------------------------------------------------------------------ */
+
+/* Adds an attribute: one value for all nodes, or those of another one. It hides one of its name. */
+static bool add_form(cli_tree *tree, int slot, const char *name, double value,
+                     const sdv_attribute *from) {
+    sdv_tree *t = &tree->vessel.tree;
+    uint32_t step = from && from->components ? from->components : 1;
+    float *values = cli_new(t->node_count, sizeof *values);
+    sdv_attribute *rows = cli_new(t->node_attribute_count + 1u, sizeof *rows);
+    if (!values || !rows) {
+        free(values);
+        free(rows);
+        return false;
+    }
+    for (uint32_t i = 0; i < t->node_count; i++)
+        values[i] = from ? from->values[(size_t)i * step] : (float)value;
+    rows[0] = (sdv_attribute){name, 1, values};
+    for (uint32_t i = 0; i < t->node_attribute_count; i++)
+        rows[i + 1] = t->node_attributes[i];
+    free(tree->forms);
+    tree->forms = t->node_attributes = rows;
+    tree->form_values[slot] = values;
+    t->node_attribute_count++;
+    return true;
+}
+
+/* --section, --uncertainty and --bump-size over what the file says. */
+static bool add_forms(cli_tree *tree) {
+    const cli_vessel_options *v = &tree->options->vessel;
+    const char *text = v->uncertainty;
+    if (v->bump_size > 0)
+        tree->vessel.tree.bump_size = (float)v->bump_size;
+    if (text) {
+        const sdv_attribute *from = find_attribute(&tree->vessel.tree, text);
+        char *end;
+        double mm = strtod(text, &end);
+        if (!from && (*end || end == text || !(mm >= 0 && mm < 1e6)))
+            return cli_fail("%s: its nodes have no attribute '%s' for --uncertainty", tree->name,
+                            text);
+        if (!add_form(tree, 0, SDV_UNCERTAINTY, mm, from))
+            return false;
+    }
+    return !(v->section > 0) || add_form(tree, 1, SDV_SECTION_RATIO, v->section, NULL);
+}
+
 /* How near a node is, 0 .. 1; half at a tenth of the tree's size (L19 Fig. 12). */
 static float nearness(const cli_tree *tree, uint32_t node) {
     const float(*bounds)[3] = tree->vessel.tree.info.bounds;
@@ -195,8 +240,9 @@ bool cli_tree_load(const cli_options *options, const cli_place *place, uint32_t 
     bool ok = out->source->path         ? read_tree(out, place)
               : options->vessel.surface ? true
                                         : make_tree(out);
-    ok = ok && (is_surface(out) ? cli_tree_mesh(out)
-                                : cli_target_make(out) && lay_out(out) && measure(out));
+    ok = ok &&
+         (is_surface(out) ? cli_tree_mesh(out)
+                          : add_forms(out) && cli_target_make(out) && lay_out(out) && measure(out));
     cli_progress_end(&out->progress);
     return ok;
 }
@@ -485,6 +531,9 @@ void cli_tree_free(cli_tree *tree) {
     sdv_layout_free(&tree->layout);
     sdv_reduced_free(&tree->reduced);
     io_vessel_free(&tree->vessel);
+    free(tree->forms);
+    free(tree->form_values[0]);
+    free(tree->form_values[1]);
     io_contents_free(&tree->contents);
     cli_threads_stop(tree->threads);
     memset(tree, 0, sizeof *tree);

@@ -33,8 +33,10 @@ typedef struct cli_tree {
     cli_threads *threads;
     cli_progress progress;
     sdv_host host;
-    io_contents contents; /* of the file; its tree's warnings are kept */
-    io_vessel vessel;     /* positions in mm, minus vessel.origin */
+    io_contents contents;  /* of the file; its tree's warnings are kept */
+    io_vessel vessel;      /* positions in mm, minus vessel.origin */
+    sdv_attribute *forms;  /* owned; in place of the tree's attributes where flags add some */
+    float *form_values[2]; /* owned; theirs */
     sdv_reduced reduced;
     sdv_layout layout;
     const cli_target_option *aim; /* which of the options' targets; NULL: none */

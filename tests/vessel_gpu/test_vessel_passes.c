@@ -280,6 +280,25 @@ static void from_within(void **state) {
     subject_free(&tree);
 }
 
+/* Elliptic cross sections and noise, from without, from within and in the box. */
+static void forms(void **state) {
+    subject tree;
+    scene s;
+    (void)state;
+    subject_make(&tree, 60, 1);
+    subject_form(&tree, 7);
+    scene_make(&s, &tree);
+    s.vessel.field_shadow = 1;
+    check(&s, &tree, 300);
+    s.vessel.near_miss = SDV_NEAR_MISS_EXACT;
+    check(&s, &tree, 300);
+    s.vessel.near_miss = SDV_NEAR_MISS_NONE;
+    s.shot.camera = render_camera(1, 0, 0, 0.2);
+    render_perspective(&s.shot.camera, 60, (double)WIDTH / HEIGHT, 0.001, 100);
+    check(&s, &tree, WIDTH * HEIGHT);
+    subject_free(&tree);
+}
+
 /* The tree combined with a shape of every kind, field included, by all operations. */
 enum { SAMPLES = 5, SHAPES = 6 };
 typedef struct carving {
@@ -476,6 +495,7 @@ int main(void) {
         cmocka_unit_test(perspective), cmocka_unit_test(orthographic),
         cmocka_unit_test(from_within), cmocka_unit_test(with_shapes),
         cmocka_unit_test(layouts),     cmocka_unit_test(among_lines),
+        cmocka_unit_test(forms),
     };
     return cmocka_run_group_tests(tests, open_all, close_all);
 }

@@ -14,6 +14,8 @@ typedef struct subject {
     sdv_grid grid;
     sdv_object object;
     uint8_t *colors;
+    sdv_attribute attributes[3]; /* of a subject with forms */
+    float *values;
 } subject;
 
 static uint32_t random_of(uint32_t *state) {
@@ -66,7 +68,35 @@ static void subject_make(subject *s, uint32_t nodes, uint32_t seed) {
     free(segments);
 }
 
+/* Gives its vessels forms: ellipses, some of them circles or without a value, and noise, here and
+ * there of no amplitude or too much. */
+static inline void subject_form(subject *s, uint32_t seed) {
+    uint32_t n = s->tree.node_count;
+    sdv_grid_desc grid;
+    memset(&grid, 0, sizeof grid);
+    grid.resolution = 40;
+    s->values = malloc(5 * n * sizeof(float));
+    assert_non_null(s->values);
+    for (uint32_t i = 0; i < n; i++) {
+        s->values[i] = i % 5 == 0 ? 1.0f : between(&seed, -0.1f, 1.1f);
+        s->values[n + i] = i % 7 == 3 ? 0.0f : s->tree.nodes[i].w * between(&seed, 0.0f, 0.9f);
+        for (uint32_t k = 0; k < 3; k++)
+            s->values[2 * n + 3 * i + k] = i % 13 == 1 ? 0.0f : between(&seed, -1, 1);
+    }
+    s->attributes[0] = (sdv_attribute){SDV_SECTION_RATIO, 1, s->values};
+    s->attributes[1] = (sdv_attribute){SDV_UNCERTAINTY, 1, s->values + n};
+    s->attributes[2] = (sdv_attribute){SDV_SECTION_AXIS, 3, s->values + 2 * n};
+    s->tree.node_attributes = s->attributes;
+    s->tree.node_attribute_count = 3;
+    sdv_object_free(&s->object);
+    sdv_grid_free(&s->grid);
+    assert_int_equal(sdv_grid_build(NULL, &s->tree, &grid, &s->grid), LAO_OK);
+    assert_non_null(s->grid.forms);
+    assert_int_equal(sdv_object_make(NULL, &s->grid, s->colors, &s->object), LAO_OK);
+}
+
 static void subject_free(subject *s) {
+    free(s->values);
     sdv_object_free(&s->object);
     sdv_grid_free(&s->grid);
     sdv_tree_free(&s->tree);
