@@ -303,7 +303,7 @@ static void hovers_and_picks(desktop *d) {
     user_presses(d, 1, false);
 }
 
-/* A target, a path of two clicks, a cut; and back. */
+/* A target, a path of two clicks, a lens, a cut; and back. */
 static void places_on_trees(void **state) {
     static const char *const words[] = {
         "vessel",   "aim.swc",
@@ -325,9 +325,12 @@ static void places_on_trees(void **state) {
     click_middle(d, 150); /* beside the vessels */
     assert_placed(d, " --path ", true);
     click_middle(d, 0);
+    user_clicks(d, "Lens here");
+    assert_placed(d, " --lens sphere:", true);
+    click_middle(d, 0);
     user_clicks(d, "Cut open here");
     assert_placed(d, " --subtract sphere:", true);
-    assert_saved(d); /* with path, risk and cut */
+    assert_saved(d); /* with path, risk, lens and cut */
     user_clicks(d, "Tree");
     user_clicks(d, "Undo");
     assert_placed(d, " --subtract ", false);
