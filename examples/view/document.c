@@ -235,6 +235,17 @@ static bool list_settings(document *doc) {
            add_settings(doc, lao_lines_module(), "Lines", &scene->sets[last].settings, last);
 }
 
+/* What is set holds inside a lens too, as --set does, but for the circle. */
+static void set_lens(document *doc, int setting, float value, uint64_t set) {
+    sdv_settings *inside = &doc->lens.tree.settings;
+    uint64_t bit = (uint64_t)1 << setting;
+    uint64_t circle = SDV_SET(lens_side) | SDV_SET(lens_x) | SDV_SET(lens_y) | SDV_SET(lens_radius);
+    if (!doc->lens.options.vessel.lens.text || (bit & circle))
+        return;
+    values_of(inside)[setting] = value;
+    inside->set = (inside->set & ~bit) | (set & bit);
+}
+
 void document_set(document *doc, uint32_t index, int setting, float value) {
     document_settings *s = &doc->settings[index];
     uint64_t bit = (uint64_t)1 << setting, *set = s->now;
@@ -248,6 +259,8 @@ void document_set(document *doc, uint32_t index, int setting, float value) {
     values_of(s->now)[setting] = value;
     *set |= bit;
     s->edited |= bit;
+    if (s->module == sdv_module())
+        set_lens(doc, setting, value, bit);
     if (doc->command == CLI_SURFACE) { /* so that time leaves it alone */
         if (s->module == vsf_module())
             ((cli_source *)(uintptr_t)doc->wall.source)->surface.set |= bit & VSF_SET(near_gamma);
@@ -278,6 +291,8 @@ void document_reset(document *doc, uint32_t index, int setting) {
     document_set(doc, index, setting, values_of(s->base)[setting]);
     *(uint64_t *)s->now = (*(uint64_t *)s->now & ~bit) | (*(uint64_t *)s->base & bit);
     s->edited &= ~bit;
+    if (s->module == sdv_module())
+        set_lens(doc, setting, values_of(&doc->lens_base)[setting], doc->lens_base.set);
     if (doc->command == CLI_SURFACE && s->set == 1)
         doc->scene->sets[0].settings.set &= ~bit | *(uint64_t *)s->base;
 }
@@ -366,7 +381,10 @@ static bool load(document *doc) {
     }
     if (doc->command == CLI_VESSEL) {
         doc->scene = &doc->tree.scene;
-        return cli_tree_load(&doc->options, NULL, 0, &doc->tree) && cli_tree_prepare(&doc->tree);
+        cli_lens_plan(&doc->options, &doc->lens);
+        return cli_tree_load(&doc->options, NULL, 0, &doc->tree) &&
+               cli_lens_load(&doc->lens, &doc->tree) && cli_tree_prepare(&doc->tree) &&
+               cli_lens_prepare(&doc->lens, &doc->tree);
     }
     doc->scene = &doc->wall.scene;
     if (!cli_wall_load(&doc->options, NULL, &doc->wall))
@@ -383,8 +401,11 @@ static bool load(document *doc) {
 static bool aim(document *doc) {
     cli_wall *wall = &doc->wall;
     lao_object_desc all;
-    if (doc->command == CLI_VESSEL)
+    if (doc->command == CLI_VESSEL) {
         cli_tree_fit_period(&doc->tree, &doc->shot);
+        cli_lens_fit(&doc->lens, &doc->tree, &doc->shot);
+        doc->lens_base = doc->lens.tree.settings;
+    }
     if (doc->command != CLI_SURFACE)
         return true;
     if (wall->lit && isnan(doc->options.time) && !doc->options.surface.lines)
@@ -431,8 +452,10 @@ void document_close(document *doc) {
     if (!doc)
         return;
     cli_scene_free(&doc->lines);
-    if (doc->command == CLI_VESSEL)
+    if (doc->command == CLI_VESSEL) {
         cli_tree_free(&doc->tree);
+        cli_tree_free(&doc->lens.tree);
+    }
     if (doc->command == CLI_SURFACE)
         cli_wall_free(&doc->wall);
     cli_options_free(&doc->options);
@@ -458,7 +481,8 @@ bool document_surround(void *user, picture *p) {
         return cli_legends_draw(&doc->options, doc->scene, NULL, 0, p);
     if (doc->command == CLI_SURFACE)
         return cli_wall_legends(&doc->wall, p);
-    return !side || strcmp(side, "off") == 0 || cli_tree_legend(&doc->tree, side, p);
+    return !side || strcmp(side, "off") == 0 ||
+           cli_tree_legend(doc->tree.value ? &doc->tree : &doc->lens.tree, side, p);
 }
 
 /* ---- command lines ----------------------------------------------------------------------- */

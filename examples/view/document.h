@@ -6,6 +6,7 @@
 #include "session.h"
 #include "surface.h"
 #include "vessel.h"
+#include "vessel_lens.h"
 #include "writing.h"
 
 /* One struct of settings: those of the lines, of the tree or of the surface. */
@@ -27,6 +28,8 @@ typedef struct document {
     cli_options options;
     cli_scene lines;
     cli_tree tree;
+    cli_lens lens;          /* over the tree */
+    sdv_settings lens_base; /* of what is inside, as opened */
     cli_wall wall;
     cli_scene *scene;            /* in one of the three */
     cli_shot shot;               /* as the words ask for it */

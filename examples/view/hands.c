@@ -1,7 +1,7 @@
 /* What a click can do with the place that it found: aim a target or an access path, cut a vessel
- * open, focus the blur. Each is a flag of the program: what is placed is part of the words that the
- * document is opened with, so that the copied command line makes the same picture; and what was
- * there before is kept, so that it can be taken back. */
+ * open, lay a lens over it, focus the blur. Each is a flag of the program: what is placed is part
+ * of the words that the document is opened with, so that the copied command line makes the same
+ * picture; and what was there before is kept, so that it can be taken back. */
 #include "view.h"
 
 #include <math.h>
@@ -163,9 +163,34 @@ static void cut(view *v, const double at[3]) {
     free(list.text);
 }
 
+static void drop_lens(word_list *list) {
+    drop(list, "--lens", NULL);
+    drop(list, "--lens-style", NULL);
+    drop(list, "--lens-color", NULL);
+    drop(list, "--lens-tree", NULL);
+}
+
+/* A ball with another look; the one that was there moves here. */
+static void look_in(view *v, const double at[3]) {
+    const cli_vessel_options *o = &v->doc->options.vessel;
+    word_list list;
+    char text[HANDS_TEXT];
+    begin_words(v, &list);
+    snprintf(text, sizeof text, "sphere:%.6g,%.6g,%.6g,%.4g", at[0], at[1], at[2],
+             2 * (double)v->hands.lens);
+    drop(&list, "--lens", NULL);
+    add(&list, "--lens", text);
+    if (!o->lens.text) /* far from any other look */
+        add(&list, "--lens-style", o->style && strcmp(o->style, "ink") == 0 ? "default" : "ink");
+    trace(v, "placed --lens %s", text);
+    reopen(v, &list);
+    free(list.text);
+}
+
 static void take_away(view *v) {
     word_list list;
     begin_words(v, &list);
+    drop_lens(&list);
     drop(&list, "--target", NULL);
     drop(&list, "--path", NULL);
     drop(&list, "--risk", NULL);
@@ -256,6 +281,9 @@ static void tree_buttons(view *v) {
     if (ui_small_button("Cut open here"))
         cut(v, v->picked.at);
     ui_help("takes a ball away, to look inside");
+    if (ui_small_button("Lens here"))
+        look_in(v, v->picked.at);
+    ui_help("a ball in which the vessels have another look (--lens-style)");
 }
 
 void hands_buttons(view *v) {
@@ -302,7 +330,7 @@ void hands_tree(view *v) {
     const cli_target_option *aimed = o->target_count ? &o->targets[0] : NULL;
     bool ball =
         aimed && !aimed->path && strspn(aimed->text, "0123456789.,-+e") == strlen(aimed->text);
-    if (!aimed && !o->shape_count && !h->count) {
+    if (!aimed && !o->shape_count && !o->lens.text && !h->count) {
         ui_text_dim("Click a vessel to aim at it: a target or a path, and what is at risk near it; "
                     "or to cut it open.");
         return;
@@ -325,9 +353,9 @@ void hands_tree(view *v) {
         take_back(v);
     if (h->count)
         ui_same_line();
-    if ((aimed || o->shape_count) && ui_button("Take away"))
+    if ((aimed || o->shape_count || o->lens.text) && ui_button("Take away"))
         take_away(v);
-    ui_help("target, path and cut balls");
+    ui_help("target, path, cut balls and lens");
     if (h->stale && !ui_active() && aimed) { /* the slider has been let go */
         double at[4];
         h->stale = false;

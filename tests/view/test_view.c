@@ -329,7 +329,7 @@ static void places_on_trees(void **state) {
     quit(f);
 }
 
-/* A path of two clicks in place of a target, a cut; and back. */
+/* A path of two clicks in place of a target, a lens, a cut; and back. */
 static void long_places_on_trees(void **state) {
     fixture *f = *state;
     desktop *d = f->desktop;
@@ -342,9 +342,12 @@ static void long_places_on_trees(void **state) {
     click_middle(d, 150); /* beside the vessels */
     assert_placed(d, " --path ", true);
     click_middle(d, 0);
+    user_clicks(d, "Lens here");
+    assert_placed(d, " --lens sphere:", true);
+    click_middle(d, 0);
     user_clicks(d, "Cut open here");
     assert_placed(d, " --subtract sphere:", true);
-    assert_saved(d); /* with path, risk and cut */
+    assert_saved(d); /* with path, risk, lens and cut */
     user_clicks(d, "Tree");
     user_clicks(d, "Undo");
     assert_placed(d, " --subtract ", false);
