@@ -1618,12 +1618,13 @@ LAO_FN lao_v2 lao_pixel_slope(lao_v4 ray, float px, float py) {
     return lao_v2_make(x, y);
 }
 /* The view ray through a pixel centre in the world, from the eye (orthographic: from the eye's
-   plane): a point and a unit vector. */
+   plane): a point and a unit vector. Choices, no branch: lavapipe compiles a pass anew in every
+   frame for a branch that depends on uniforms alone. */
 LAO_FN lao_v3 lao_ray_origin(lao_m4 world, lao_v2 slope, float orthographic) {
-    if (orthographic > 0.5f) {
-        return lao_transform(world, lao_v3_make(slope.x, slope.y, 0.0f));
-    }
-    return lao_v3_make(world.w.x, world.w.y, world.w.z);
+    bool flat_view = orthographic > 0.5f;
+    lao_v3 plane = lao_transform(world, lao_v3_make(slope.x, slope.y, 0.0f));
+    return lao_v3_make(flat_view ? plane.x : world.w.x, flat_view ? plane.y : world.w.y,
+                       flat_view ? plane.z : world.w.z);
 }
 LAO_FN lao_v3 lao_ray_direction(lao_m4 world, lao_v2 slope, float orthographic) {
     lao_v2 s = orthographic > 0.5f ? lao_v2_make(0.0f, 0.0f) : slope;
@@ -1634,10 +1635,10 @@ LAO_FN lao_v3 lao_ray_direction(lao_m4 world, lao_v2 slope, float orthographic) 
 }
 /* Unit vector from the surface at that pixel towards the eye: the direction of the head light. */
 LAO_FN lao_v3 lao_towards_eye(lao_v2 slope, float orthographic) {
-    if (orthographic > 0.5f) {
-        return lao_v3_make(0.0f, 0.0f, 1.0f);
-    }
-    return lao_v3_unit(lao_v3_make(-slope.x, -slope.y, 1.0f), lao_v3_make(0.0f, 0.0f, 1.0f));
+    lao_v3 axis = lao_v3_make(0.0f, 0.0f, 1.0f);
+    bool flat_view = orthographic > 0.5f;
+    return lao_v3_unit(lao_v3_make(flat_view ? 0.0f : -slope.x, flat_view ? 0.0f : -slope.y, 1.0f),
+                       axis);
 }
 /* Pixels per mm at view position p across the direction o (METHODS 1.4): Eq. 14 in pixels,
  * aspect-correct, xy only. */

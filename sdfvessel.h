@@ -588,7 +588,15 @@ SDV_API const lao_module *sdv_pull_push_module(void);
     X(shadow_light_y, FLOAT, -100, 100, 0.8f, 0, "", "", "and up")                                 \
     X(field_shadow_softness, FLOAT, 0.001f, 10, 0.08f, 0, "", "",                                  \
       "radius of that light per its distance")                                                     \
-    X(field_shadow_strength, FLOAT, 0, 1, 0.55f, 0, "", "", "light that a field shadow takes away")
+    X(field_shadow_strength, FLOAT, 0, 1, 0.55f, 0, "", "",                                        \
+      "light that a field shadow takes away")                                                      \
+    X(lens_side, ENUM, 0, 2, 0, 0, "", "none|inside|outside",                                      \
+      "draw only inside or outside a circle on the picture, a magic lens")                         \
+    X(lens_x, FLOAT, -10, 10, 0.5f, 0, "", "",                                                     \
+      "its middle from the left, in widths of the picture")                                        \
+    X(lens_y, FLOAT, -10, 10, 0.5f, 0, "", "", "from the top, in heights of the picture")          \
+    X(lens_radius, FLOAT, 0, 10, 0.25f, 0, "", "", "its radius, in heights of the picture")        \
+    X(lens_rim, FLOAT, 0, 100, 2, 0, "px", "", "width of the ring that what is inside draws")
 
 /* What a vessel tree looks like; as lao_settings: zero is the default unless its bit is set. */
 typedef struct sdv_settings {
@@ -1769,9 +1777,35 @@ LAO_FN float sdv_push_weight(sdv_mix parents, float own) {
 #define SDV_NEAR_MISS_NONE 2
 #define SDV_OUTLINE_PX 0
 #define SDV_HALO_FOOTPRINT 0.3f /* periods per pixel: where the void is steeper, marks end */
+/* A magic lens (Bier et al. 1993): a circle on the picture inside or outside which a set is drawn.
+ */
+#define SDV_LENS_NONE 0
+#define SDV_LENS_INSIDE 1
+#define SDV_LENS_OUTSIDE 2
+/* On which side of the circle a pixel's centre is; on it: inside. lens: middle, from the left and
+   the top, in widths and heights of the picture; radius in heights, less `rim` samples. x, y: in
+   samples, row 0 at the bottom; viewport: of lao_frame_uniforms. */
+LAO_FN float sdv_lens_part(lao_v3 lens, float rim, float x, float y, lao_v4 viewport) {
+    LAO_EXACT float right = x - lens.x * viewport.x;
+    LAO_EXACT float up = y - (1.0f - lens.y) * viewport.y;
+    LAO_EXACT float radius = lens.z * viewport.y - rim;
+    LAO_EXACT float beyond =
+        right * right + up * up - lao_max(radius, 0.0f) * lao_max(radius, 0.0f);
+    return beyond > 0.0f ? 2.0f : 1.0f;
+}
+/* Is a pixel on this part not drawn by a set of that lens_side? By arithmetic: drivers compile
+   anew for every value of a uniform that is branched on. */
+LAO_FN bool sdv_lens_hides(float side, float part) {
+    return side * lao_abs(side - part) > 0.5f;
+}
+/* Is a pixel that is drawn on the ring? part: of the circle inside the ring. */
+LAO_FN bool sdv_lens_rings(float side, float part) {
+    return side * part == 2.0f;
+}
 /* Pixels of the picture per mm at view depth z; scale, depth: of lao_frame_uniforms. */
 LAO_FN float sdv_zoom(lao_v4 scale, lao_v4 depth, float z, float supersampling) {
-    LAO_EXACT float across = (depth.w > 0.5f ? 1.0f : lao_max(z, 1.0e-6f)) * supersampling;
+    float apart = lao_max(z, 1.0e-6f);
+    LAO_EXACT float across = (depth.w > 0.5f ? 1.0f : apart) * supersampling;
     LAO_EXACT float r = lao_abs(scale.y) / across;
     return r;
 }
@@ -1915,7 +1949,8 @@ LAO_FN lao_v3 sdv_shadow_light(lao_m4 world, float x, float y) {
 }
 /* mm across a pixel at that depth. */
 LAO_FN float sdv_pixel_size(lao_v4 ray, float depth, float orthographic) {
-    LAO_EXACT float r = lao_abs(ray.y) * (orthographic > 0.5f ? 1.0f : lao_abs(depth));
+    float apart = lao_abs(depth);
+    LAO_EXACT float r = lao_abs(ray.y) * (orthographic > 0.5f ? 1.0f : apart);
     return r;
 }
 /* From pixel to pixel along an axis, on the side where depth changes less. */

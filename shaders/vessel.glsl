@@ -125,6 +125,14 @@ sdv_nearest sdv_nearest_add(sdv_nearest best, float value, int apart, int along,
     }
     return best;
 }
+/* ---- the lens */
+float sdv_lens_at(ivec2 pixel, float rim) {
+    return sdv_lens_part(lao_v3_make(lao_setting_lens_x, lao_setting_lens_y, lao_setting_lens_radius), rim,
+                         float(pixel.x) + 0.5, float(pixel.y) + 0.5, lao_frame.viewport);
+}
+bool sdv_is_hidden(ivec2 pixel) {
+    return sdv_lens_hides(lao_setting_lens_side, sdv_lens_at(pixel, 0.0));
+}
 /* ---- light and ink */
 /* How dark the depth shadow at a traced pixel is; normal, ray: its texels. */
 float sdv_depth_shadow_at(vec4 normal, vec4 ray) {

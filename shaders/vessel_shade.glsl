@@ -111,6 +111,15 @@ vec4 neighbour(ivec2 pixel) {
 
 void main() {
     ivec2 pixel = LAO_PIXEL;
+    if (sdv_is_hidden(pixel)) {
+        discard;
+    }
+    if (sdv_lens_rings(lao_setting_lens_side,
+                       sdv_lens_at(pixel, lao_setting_lens_rim * float(lao_constant_supersampling)))) {
+        gl_FragDepth = lao_frame.scale.z; /* before all */
+        out_color = vec4(vec3(0.2), 1.0);
+        return;
+    }
     vec4 hit = texelFetch(position, pixel, 0);
     vec4 n = texelFetch(normal, pixel, 0);
     vec4 r = texelFetch(ray, pixel, 0);

@@ -8,7 +8,8 @@ LAO_TEX(5, sampler2D, lists)
 LAO_CONSTANT(0, lao_constant_near_miss)
 LAO_CONSTANT(1, lao_constant_supersampling)
 LAO_CONSTANT(2, lao_constant_has_vessel_cells)
-LAO_CONSTANT(3, lao_constant_has_vessel_forms)
+LAO_CONSTANT(3, lao_constant_parameterization)
+LAO_CONSTANT(4, lao_constant_has_vessel_forms)
 
 LAO_OUT(0, vec4, out_position) /* world, mm; number of the cone, -1: nothing was hit */
 LAO_OUT(1, vec4, out_normal)   /* world, towards the viewer; least distance of a near miss, mm */
@@ -89,6 +90,12 @@ void land(sdv_box b, lao_v3 origin, lao_v3 direction, sdv_march m) {
 
 void main() {
     ivec2 pixel = LAO_PIXEL;
+    out_position = vec4(0.0, 0.0, 0.0, -1.0);
+    out_normal = vec4(0.0, 0.0, 0.0, SDV_FAR);
+    out_ray = vec4(0.0);
+    if (lao_constant_parameterization == 0 && sdv_is_hidden(pixel)) { /* else the void is filled from all */
+        return;
+    }
     lao_v2 slope = lao_pixel_slope(lao_frame.ray, float(pixel.x) + 0.5, float(pixel.y) + 0.5);
     lao_v3 origin = lao_ray_origin(lao_frame.world, slope, lao_frame.depth.w);
     lao_v3 direction = lao_ray_direction(lao_frame.world, slope, lao_frame.depth.w);
@@ -127,8 +134,7 @@ void main() {
         m.d_min = SDV_FAR;
         m = minimum(b, origin, direction, m, m.low_cone, 0.0, SDV_FAR);
     }
-    out_position = vec4(0.0, 0.0, 0.0, -1.0);
-    out_normal = vec4(0.0, 0.0, 0.0, m.d_min);
+    out_normal.w = m.d_min;
     out_ray = vec4(0.0, m.t_min, m.steps, m.inside);
     if (m.state == SDV_MARCH_HITS) {
         land(b, origin, direction, m);

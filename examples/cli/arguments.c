@@ -32,6 +32,7 @@ typedef enum flag_type {
     FLAG_SHAPE,   /* a further shape; `choices`: the operation */
     FLAG_TARGET,  /* a further path ("path" in `choices`) or target */
     FLAG_FOCUS,   /* cli_surface_options: two numbers or four */
+    FLAG_LENS,    /* cli_lens_option */
 } flag_type;
 
 typedef struct flag_row {
@@ -75,6 +76,10 @@ static const flag_row flags[] = {
     {"--intersect", NULL, "SHAPE", FLAG_SHAPE, CLI_VESSEL, ALL(vessel.shapes), "1", "keep what is inside; the shapes are applied in the order of the flags"},
     {"--union", NULL, "SHAPE", FLAG_SHAPE, CLI_VESSEL, ALL(vessel.shapes), "0", "add the shape; --union tree adds the vessels again, behind the cuts of an organ"},
     {"--shape-color", NULL, "#rrggbb|nearest", FLAG_PAINT, CLI_VESSEL, ALL(vessel.shape_color), NULL, "of what shapes add or cut open, or that of the nearest vessel"},
+    {"--lens", NULL, "LENS", FLAG_LENS, CLI_VESSEL, ALL(vessel.lens), "sphere:X,Y,Z,R or circle:X,Y,R", "a magic lens, inside which the tree has another look: the ball sphere:X,Y,Z,R (mm), or circle:X,Y,R on the picture (from the left and the top, in widths and heights; radius in heights); ring: --set lens_rim=PX"},
+    {"--lens-style", NULL, "NAME", FLAG_CHOICE, CLI_VESSEL, ALL(vessel.lens.style), CLI_STYLES, "as --style, inside the --lens (default)"},
+    {"--lens-color", NULL, "NAME", FLAG_PAINT, CLI_VESSEL, ALL(vessel.lens.color), NULL, "as --color, inside the --lens (as outside)"},
+    {"--lens-tree", NULL, "FILE", FLAG_TEXT, CLI_VESSEL, ALL(vessel.lens.tree), NULL, "another tree, in the same millimetres, that shows inside the --lens"},
     {"--surface", NULL, "NAME", FLAG_TEXT, CLI_VESSEL, ALL(vessel.surface), NULL, "without a FILE: an embedded surface instead of a tree: liver, aneurysm, aorta or bone"},
     {"--pattern", NULL, "FILE.png", FLAG_TEXT, CLI_VESSEL, ALL(vessel.pattern), NULL, "for --set style=pattern: the picture, dark parts first, that ink makes of (u, v); its middle square, up to 256 pixels"},
     {"--last", NULL, NULL, FLAG_SWITCH, CLI_VESSEL, ALL(vessel.last), NULL, "of several cameras or frames write only the last picture, to FILE.png as it is"},
@@ -463,6 +468,18 @@ static bool parse_focus(const char *text, cli_surface_options *out) {
                : out->focus_numbers == 2 && out->focus_at[0] <= out->focus_at[1];
 }
 
+/* A ball is read as the shape that it is. */
+static bool parse_lens(const char *text, cli_lens_option *out) {
+    double ball[4];
+    out->text = text;
+    out->is_circle = strncmp(text, "circle:", 7) == 0;
+    return out->is_circle
+               ? cli_numbers(text + 7, out->circle, 3) && out->circle[2] > 0 &&
+                     out->circle[2] <= 10 && fabs(out->circle[0]) <= 10 &&
+                     fabs(out->circle[1]) <= 10
+               : strncmp(text, "sphere:", 7) == 0 && cli_numbers(text + 7, ball, 4) && ball[3] > 0;
+}
+
 static bool is_flow_flag(const flag_row *row) {
     size_t begin = offsetof(cli_options, flow);
     return !row->per_file && row->offset >= begin && row->offset < begin + sizeof(cli_flow_options);
@@ -532,6 +549,9 @@ static bool set_flag(parser *p, const flag_row *row, const char *value) {
         return add_target(p, row, value);
     case FLAG_FOCUS:
         ok = parse_focus(value, field);
+        break;
+    case FLAG_LENS:
+        ok = parse_lens(value, field);
         break;
     }
     return ok || cli_fail("%s: '%s' is not a value of it; write %s", row->name, value,
@@ -604,6 +624,28 @@ static bool is_line_name(const char *path) {
     return dot && is_choice("vtp|trk|tck", dot + 1);
 }
 
+static bool check_lens(const cli_options *o) {
+    const cli_vessel_options *v = &o->vessel;
+    const cli_lens_option *lens = &v->lens;
+    const char *more = lens->style   ? "--lens-style"
+                       : lens->color ? "--lens-color"
+                       : lens->tree  ? "--lens-tree"
+                                     : NULL;
+    if (!lens->text)
+        return !more || cli_fail("%s: inside what? write --lens", more);
+    if (v->link || o->dump)
+        return cli_fail("--lens: leave %s out, which shows one tree",
+                        v->link ? "--link" : "--dump");
+    if (lens->color && strcmp(lens->color, "distance") == 0 && !v->target_count)
+        return cli_fail("--lens-color: distance needs a --path or a --target");
+    if (lens->is_circle)
+        return true;
+    if (lens->style && strcmp(lens->style, "void") == 0)
+        return cli_fail("--lens-style: there is no void in a ball; write --lens circle:X,Y,R");
+    return v->shape_count < CLI_SHAPES ||
+           cli_fail("--lens: a ball is a further shape, of %d at most", CLI_SHAPES);
+}
+
 static bool check_vessel(const cli_options *o) {
     const cli_vessel_options *v = &o->vessel;
     if (o->file_count > 1)
@@ -635,7 +677,7 @@ static bool check_vessel(const cli_options *o) {
                         o->camera ? "--camera"
                         : o->view ? "--view"
                                   : "--ortho");
-    return true;
+    return check_lens(o);
 }
 
 static bool check_surface(const cli_options *o) {

@@ -84,6 +84,14 @@ typedef struct cli_target_option {
     bool path;
     const char *text;
 } cli_target_option;
+/* A magic lens: where another style, or another tree, shows. */
+typedef struct cli_lens_option {
+    const char *text; /* NULL: none; else a ball, as the text of a shape, or a circle */
+    double circle[3]; /* middle from the left and the top and radius, in widths and heights */
+    bool is_circle;   /* of the picture */
+    const char *style, *tree, *color; /* NULL: not given */
+} cli_lens_option;
+
 typedef struct cli_vessel_options {
     const char *style, *tree, *cameras, *weight, *surface, *pattern, *field;
     cli_target_option targets[CLI_TARGETS]; /* several only with `link` */
@@ -100,6 +108,7 @@ typedef struct cli_vessel_options {
     double bump_size; /* mm; negative: not given */
     cli_shape_option shapes[CLI_SHAPES];
     uint32_t shape_count;
+    cli_lens_option lens;
 } cli_vessel_options;
 
 /* Of a mesh, for any device: vertices are counted in floats. */

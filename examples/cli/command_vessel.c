@@ -3,6 +3,7 @@
 #include "image.h"
 #include "report.h"
 #include "writing.h"
+#include "vessel_lens.h"
 #include "vessel_page.h"
 #include "video.h"
 
@@ -69,6 +70,7 @@ typedef struct stage {
     const cli_options *options; /* of the whole picture */
     cli_tree *trees;
     uint32_t count;
+    cli_lens *lens;
     cli_shot shot;
     cli_session sessions[CLI_TARGETS];
     cli_page page;              /* with --link */
@@ -94,10 +96,15 @@ static bool write_page(const char *path, stage *s) {
     return ok;
 }
 
+/* The tree whose colours show a number, if one does. */
+static const cli_tree *scaled_tree(const stage *s) {
+    return s->trees[0].value ? &s->trees[0] : &s->lens->tree;
+}
+
 static bool draw_legend(void *user, picture *p) {
     stage *s = user;
     const char *side = s->options->legend;
-    return !side || strcmp(side, "off") == 0 || cli_tree_legend(&s->trees[0], side, p);
+    return !side || strcmp(side, "off") == 0 || cli_tree_legend(scaled_tree(s), side, p);
 }
 
 static bool write_view(const char *path, stage *s) {
@@ -224,7 +231,8 @@ static bool prepare(stage *s, const view_list *views) {
     bool scaled = side && strcmp(side, "off") != 0, ok = true;
     for (uint32_t i = 0; ok && i < s->count; i++)
         ok = cli_tree_prepare(&s->trees[i]);
-    if (ok && scaled && !s->trees[0].value)
+    ok = ok && cli_lens_prepare(s->lens, &s->trees[0]);
+    if (ok && scaled && !scaled_tree(s)->value)
         ok = cli_fail("--legend: these colours show no number; write --color radius, order or "
                       "distance, or the NAME of an attribute");
     ok = ok && cli_shot_make(s->trees[0].options, &s->trees[0].scene, &s->shot);
@@ -232,6 +240,8 @@ static bool prepare(stage *s, const view_list *views) {
         s->shot.camera = views->poses[0];
     for (uint32_t i = 0; ok && i < s->count; i++)
         cli_tree_fit_period(&s->trees[i], &s->shot);
+    if (ok)
+        cli_lens_fit(s->lens, &s->trees[0], &s->shot);
     return ok && cli_write_camera(options, &s->shot.camera) &&
            (!options->vessel.link || !options->out || draw_flats(s));
 }
@@ -381,6 +391,7 @@ int cli_vessel(const cli_options *options) {
                               o->tree,      o->layout[0],  o->layout[1],     o->layout[2]};
     cli_options panel = *options; /* of one tree's picture */
     cli_tree trees[CLI_TARGETS];
+    cli_lens lens;
     stage s;
     for (int i = 0; i < 8; i++) {
         if (!cli_writable(outputs[i]))
@@ -388,17 +399,21 @@ int cli_vessel(const cli_options *options) {
     }
     memset(&s, 0, sizeof s);
     memset(trees, 0, sizeof trees);
+    memset(&lens, 0, sizeof lens);
     s.options = options;
     s.trees = trees;
+    s.lens = &lens;
     bool ok = plan(&s, &panel);
+    cli_lens_plan(&panel, &lens);
     do
         ok = ok && cli_tree_load(&panel, NULL, s.count, &trees[s.count]);
     while (++s.count < o->target_count && ok);
-    ok = ok && run(&s);
+    ok = ok && cli_lens_load(&lens, &trees[0]) && run(&s);
     for (uint32_t i = 0; i < s.count; i++) {
         cli_session_close(&s.sessions[i]);
         picture_free(&s.flats[i]);
         cli_tree_free(&trees[i]);
     }
+    cli_tree_free(&lens.tree);
     return ok ? CLI_OK : CLI_FAILED;
 }

@@ -1,7 +1,8 @@
 /* `lineao vessel` keeps its contract: trees, layouts, distances, cuts and cameras come out as files
  * whose numbers agree with each other and with the shapes that were asked for, on both backends
- * alike; the layout stands beside the tree or alone, and what is at risk is marked in both; nothing
- * is drawn unless a picture, a dump or timings are asked for; wrong usage is one line.
+ * alike; the layout stands beside the tree or alone, and what is at risk is marked in both; a lens
+ * shows another look inside; nothing is drawn unless a picture, a dump or timings are asked for;
+ * wrong usage is one line.
  */
 #include "program.h"
 
@@ -611,6 +612,18 @@ static void test_faults(void **state) {
         {"vessel y.swc --risk 5 -o a.png", "--target", 2},
         {"vessel y.swc --path 0,0,0:1,1,1 --path 0,0,0:2,2,2 -o a.png", "--link", 2},
         {"vessel y.swc --shape-color nearest -o a.png", "shape", 2},
+        {"vessel y.swc --lens blob:1 -o a.png", "--lens", 2},
+        {"vessel y.swc --lens circle:1,2 -o a.png", "circle:X,Y,R", 2},
+        {"vessel y.swc --lens circle:0.5,0.5,0 -o a.png", "--lens", 2},
+        {"vessel y.swc --lens sphere:1,2,3,-4 -o a.png", "--lens", 2},
+        {"vessel y.swc --lens-style ink -o a.png", "write --lens", 2},
+        {"vessel y.swc --lens-tree y.swc -o a.png", "write --lens", 2},
+        {"vessel y.swc --lens circle:0,0,1 --lens-style wild -o a.png", "--lens-style", 2},
+        {"vessel y.swc --lens circle:0,0,1 --lens-color distance -o a.png", "--target", 2},
+        {"vessel y.swc --lens circle:0,0,1 --link -o a.png", "--link", 2},
+        {"vessel y.swc --lens circle:0,0,1 --dump a.exr", "--dump", 2},
+        {"vessel y.swc --lens sphere:0,0,0,1 --lens-style void -o a.png", "circle", 2},
+        {"vessel y.swc --unit mm --lens circle:0,0,1 --lens-tree none.swc -o a.png", "none.swc", 1},
         {"vessel y.swc --link --size 60x40 -o a.png", "--size", 1},
         {"vessel y.swc --set silhouete=1 -o a.png", "silhouette", 2},
         {"vessel y.swc --style wild -o a.png", "--style", 2},
@@ -631,6 +644,52 @@ static void test_faults(void **state) {
     for (size_t i = 0; i < sizeof rows / sizeof *rows; i++)
         expect_fault(RUN("%s", rows[i].line), rows[i].code, rows[i].word);
     assert_false(exists("a.png"));
+}
+
+/* A picture of Y with these flags is, in each pixel, that with `inside` or with `outside` alone, as
+ * its centre is in the circle or not. inside NULL: other.swc. */
+static void expect_circle(const char *flags, const char *inside, const char *outside) {
+    const double circle[3] = {0.45 * 96, 0.4 * 72, 0.3 * 72};
+    pixels all, in, out;
+    uint32_t differ = 0;
+    expect_ok(RUN("vessel " Y "--set lens_rim=0 --lens circle:0.45,0.4,0.3 %s -o l.png", flags));
+    if (inside)
+        expect_ok(RUN("vessel " Y "%s -o i.png", inside));
+    else
+        expect_ok(RUN("vessel other.swc --unit mm --camera cam.json " SMALL
+                      "--style plain --color #208040 -o i.png"));
+    expect_ok(RUN("vessel " Y "%s -o o.png", outside));
+    read_pixels("l.png", &all);
+    read_pixels("i.png", &in);
+    read_pixels("o.png", &out);
+    for (uint32_t i = 0; i < 96 * 72; i++) {
+        double x = i % 96 + 0.5 - circle[0], y = i / 96 + 0.5 - circle[1];
+        const pixels *of = x * x + y * y <= circle[2] * circle[2] ? &in : &out;
+        assert_memory_equal(all.rgb + 3 * (size_t)i, of->rgb + 3 * (size_t)i, 3);
+        differ += memcmp(in.rgb + 3 * (size_t)i, out.rgb + 3 * (size_t)i, 3) != 0;
+    }
+    assert_true(differ > 100);
+    free(all.rgb);
+    free(in.rgb);
+    free(out.rgb);
+}
+
+static void test_lens(void **state) {
+    (void)state;
+    write_file("other.swc", "1 0 -9 9 -1100 3 -1\n2 0 9 14 -1100 2 1\n");
+    expect_circle("--lens-style crosshatch --lens-color #ffffff",
+                  "--style crosshatch --color #ffffff", "");
+    expect_circle("--backend vk --margin 9 --style ink --subtract sphere:8,18,-1100,4",
+                  "--margin 9 --subtract sphere:8,18,-1100,4",
+                  "--margin 9 --style ink --subtract sphere:8,18,-1100,4");
+    /* plain: nothing by the size of the scene, which the other tree makes greater */
+    expect_circle("--style plain --color #804020 --lens-style plain --lens-color #208040 "
+                  "--lens-tree other.swc",
+                  NULL, "--style plain --color #804020");
+    expect_ok(RUN("vessel " Y "--lens sphere:0,10,-1100,6 --lens-color radius --legend right "
+                  "-o l.png"));
+    expect_ok(RUN("vessel --surface liver --lens circle:0.5,0.5,0.3 --lens-style hatch " SMALL
+                  "-o l.png"));
 }
 
 static void test_help(void **state) {
@@ -669,10 +728,13 @@ int main(int argc, char **argv) {
         cmocka_unit_test(test_layout_picture), cmocka_unit_test(test_device_field),
         cmocka_unit_test(test_looks),          cmocka_unit_test(test_link),
         cmocka_unit_test(test_risk),           cmocka_unit_test(test_legend),
-        cmocka_unit_test(test_implied),        cmocka_unit_test(test_no_gpu),
+        cmocka_unit_test(test_implied),        cmocka_unit_test(test_lens),
+        cmocka_unit_test(test_no_gpu), /* the last: it changes the environment */
     };
     if (argc < 2)
         return 1;
     program = argv[1];
+    if (argc > 2)
+        cmocka_set_test_filter(argv[2]);
     return cmocka_run_group_tests(tests, enter, leave);
 }
