@@ -282,6 +282,7 @@ void compare_draw(view *v) {
         for (int k = 0; k < 2 && c->ready; k++)
             c->ready =
                 backend->upload(&v->window, SLOT_LEFT + k, r[k]->width, r[k]->height, r[k]->pixels);
+        trace(v, "range %g %g", (double)r[0]->range[0], (double)r[0]->range[1]);
         trace(v, "compared %s %ux%u %lld", c->image, r[0]->width, r[0]->height,
               (long long)c->count.bits);
     }

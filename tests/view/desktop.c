@@ -289,6 +289,31 @@ void user_sees(desktop *d, const char *label, int place[4]) {
     }
 }
 
+bool user_finds(desktop *d, const char *begin, uint32_t i, char name[], size_t size) {
+    size_t wanted = strlen(begin);
+    for (const char *at = d->text; at && *at; at = strchr(at, '\n') + 1) {
+        const char *end = strchr(at, '\n'), *earlier = d->text;
+        int length = 0;
+        if (!end)
+            break;
+        if (sscanf(at, "at %*d %*d %*d %*d %n", &length) != 0 || length == 0 ||
+            strncmp(at + length, begin, wanted) != 0)
+            continue;
+        snprintf(name, size, "%.*s", (int)(end - at - length), at + length);
+        char *said = NULL; /* the same label, before this one */
+        for (; !said && earlier < at; earlier = strchr(earlier, '\n') + 1) {
+            int skipped = 0;
+            if (sscanf(earlier, "at %*d %*d %*d %*d %n", &skipped) == 0 && skipped > 0 &&
+                strncmp(earlier + skipped, name, strlen(name)) == 0 &&
+                earlier[skipped + (int)strlen(name)] == '\n')
+                said = name;
+        }
+        if (!said && i-- == 0)
+            return true;
+    }
+    return false;
+}
+
 /* Two frames of the user interface after an event: the second one has seen it through. What is
  * said meanwhile may still be waited for. */
 static void wait_for_it(desktop *d) {

@@ -37,6 +37,8 @@ double viewer_memory(desktop *d);
 void user_clicks(desktop *d, const char *label);
 /* The place of a widget, once it is there: x, y, width, height. */
 void user_sees(desktop *d, const char *label, int place[4]);
+/* The i-th label that begins so, of those seen since the start. False: so many there are not. */
+bool user_finds(desktop *d, const char *begin, uint32_t i, char name[], size_t size);
 void user_waits(double seconds);
 void user_points(desktop *d, int x, int y);
 void user_presses(desktop *d, unsigned button, bool down);

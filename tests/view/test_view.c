@@ -6,6 +6,7 @@
 #include "desktop.h"
 #include "image.h"
 
+#include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stdio.h>
@@ -16,7 +17,7 @@
 
 #include <cmocka.h>
 
-enum { WIDTH = 820, HEIGHT = 520 };
+enum { WIDTH = 820, HEIGHT = 520, PICTURE_HEIGHT = HEIGHT - 32 };
 
 static const char *viewer, *program; /* paths */
 static char programs[4096];          /* where others are looked for */
@@ -128,8 +129,8 @@ static void fill_window(desktop *d) {
 }
 
 static void turns_and_resizes(desktop *d) {
-    static const int sizes[][2] = {{500, 300}, {900, 700}, {64, 64},   {1200, 90}, {90, 800},
-                                   {701, 501}, {700, 500}, {333, 777}, {820, 520}};
+    static const int sizes[][2] = {{500, 300}, {900, 700}, {64, 64},   {1200, 90},     {90, 800},
+                                   {701, 501}, {700, 500}, {333, 777}, {WIDTH, HEIGHT}};
     for (unsigned button = 1; button <= 3; button++) {
         user_points(d, 560, 200);
         user_presses(d, button, true);
@@ -228,7 +229,7 @@ static void save(desktop *d, char command[8192]) {
 
 /* The middle of the picture, which is beside panels of 330 px. */
 static void click_middle(desktop *d, int right) {
-    user_points(d, 330 + (WIDTH - 330) / 2 + right, 240);
+    user_points(d, 330 + (WIDTH - 330) / 2 + right, PICTURE_HEIGHT / 2);
     user_presses(d, 1, true);
     user_presses(d, 1, false);
 }
@@ -237,7 +238,7 @@ static void click_middle(desktop *d, int right) {
 static void focuses_surfaces(fixture *f) {
     char command[8192];
     desktop *d = f->desktop;
-    click_middle(d, -70); /* on the wide vessel */
+    click_middle(d, -40); /* on the shaft */
     assert_int_equal(viewer_hears(d, "picked ")[0], '3');
     user_clicks(d, "Focus here");
     assert_non_null(strchr(viewer_hears(d, "focus "), ','));
@@ -256,8 +257,8 @@ static void focuses_surfaces(fixture *f) {
 }
 
 static void saves_surfaces(void **state) {
-    static const char *const words[] = {"surface", "--scene",    "liver", "--ssaa",
-                                        "1",       "--contours", "0.3",   NULL};
+    static const char *const words[] = {"surface", "--scene",    "bone", "--ssaa",
+                                        "1",       "--contours", "0.3",  NULL};
     fixture *f = *state;
     start(f, words);
     writes_what_the_program_writes(f->desktop, "opacity");
@@ -290,7 +291,7 @@ static void assert_saved(desktop *d) {
 /* The pointer on a branch of the picture, then on one of the flat tree, which is clicked. */
 static void hovers_and_picks(desktop *d) {
     int place[4];
-    user_points(d, 330 + (WIDTH - 330) / 2, 240);
+    user_points(d, 330 + (WIDTH - 330) / 2, PICTURE_HEIGHT / 2);
     assert_string_equal(viewer_hears(d, "hovers "), "1"); /* the end of the first branch */
     user_clicks(d, "Tree");
     viewer_rests(d, 0.4);
@@ -303,8 +304,7 @@ static void hovers_and_picks(desktop *d) {
     user_presses(d, 1, false);
 }
 
-/* A target, a path of two clicks, a cut; and back. */
-static void places_on_trees(void **state) {
+static void start_tree(fixture *f) {
     static const char *const words[] = {
         "vessel",   "aim.swc",
         "--unit",   "mm",
@@ -312,11 +312,28 @@ static void places_on_trees(void **state) {
         "--ssaa",   "1",
         "--camera", "{\"eye\":[0,-200,25],\"center\":[0,0,25],\"up\":[0,0,1],\"ortho_height\":80}",
         NULL};
-    fixture *f = *state;
-    desktop *d = f->desktop;
     write_file("aim.swc", tree_file);
     start(f, words);
+}
+
+/* A branch in both views, and a target on one. */
+static void places_on_trees(void **state) {
+    fixture *f = *state;
+    desktop *d = f->desktop;
+    start_tree(f);
     hovers_and_picks(d);
+    click_middle(d, 0);
+    assert_int_equal(viewer_hears(d, "picked ")[0], '2');
+    user_clicks(d, "Target here");
+    assert_placed(d, " --target ", true);
+    quit(f);
+}
+
+/* A path of two clicks in place of a target, a cut; and back. */
+static void long_places_on_trees(void **state) {
+    fixture *f = *state;
+    desktop *d = f->desktop;
+    start_tree(f);
     click_middle(d, 0);
     assert_int_equal(viewer_hears(d, "picked ")[0], '2');
     user_clicks(d, "Target here");
@@ -395,7 +412,7 @@ static void makes_videos(void **state) {
 }
 
 static void saves_trees(void **state) {
-    static const char *const words[] = {"vessel", "--nodes", "60", "--grid",
+    static const char *const words[] = {"vessel", "--nodes", "40", "--grid",
                                         "32",     "--ssaa",  "1",  NULL};
     fixture *f = *state;
     start(f, words);
@@ -579,6 +596,70 @@ static void compares_backends(desktop *d) {
     viewer_hears(d, "frame");
 }
 
+/* Every image that the list names is read from both sides, which agree, and is painted between two
+ * numbers; or it does not exist with these settings, on neither side. Returns how many exist. */
+static int shows_images(desktop *d) {
+    char label[128];
+    int there = 0;
+    uint32_t i = 0;
+    user_clicks(d, "Compare");
+    viewer_rests(d, 0.6);
+    user_clicks(d, "Two pictures side by side");
+    viewer_hears(d, "compared out ");
+    viewer_rests(d, 0.4);
+    user_clicks(d, "##image");
+    viewer_rests(d, 0.4);
+    for (; user_finds(d, "##image ", i, label, sizeof label); i++) {
+        const char *name = label + strlen("##image ");
+        char said[160];
+        float low = 0, high = 0;
+        if (strcmp(name, "out") == 0)
+            continue;
+        user_clicks(d, label);
+        assert_int_equal(sscanf(viewer_hears(d, "range "), "%f %f", &low, &high), 2);
+        snprintf(said, sizeof said, "%s", viewer_hears(d, "compared "));
+        assert_memory_equal(said, name, strlen(name));
+        if (strstr(said, " 0x0 -1")) /* in this plan there is none */
+            low = high = 0;
+        else
+            there++;
+        if (!strstr(said, " 0x0 -1"))
+            assert_string_equal(strrchr(said, ' '), " 0");
+        assert_true(isfinite(low) && isfinite(high) && low <= high);
+        viewer_rests(d, 0.3);
+        user_clicks(d, "##image"); /* the list again, with this one in its middle */
+        viewer_rests(d, 0.3);
+    }
+    user_types(d, "Escape");
+    assert_false(viewer_said(d, "error"));
+    assert_true(i > 1);
+    print_message("%d of %u images\n", there, i - 1);
+    return there;
+}
+
+static void images(void **state, const char *const *words) {
+    fixture *f = *state;
+    start(f, words);
+    assert_true(shows_images(f->desktop) > 3);
+    quit(f);
+}
+
+static void long_images_of_lines(void **state) {
+    images(state, flow);
+}
+
+static void long_images_of_trees(void **state) {
+    static const char *const words[] = {"vessel", "aim.swc", "--unit", "mm", "--grid",
+                                        "32",     "--ssaa",  "1",      NULL};
+    write_file("aim.swc", tree_file);
+    images(state, words);
+}
+
+static void long_images_of_surfaces(void **state) {
+    static const char *const words[] = {"surface", "--scene", "bone", "--ssaa", "1", NULL};
+    images(state, words);
+}
+
 /* All that one viewer can show of lines. */
 static void shows_lines(void **state) {
     fixture *f = *state;
@@ -649,7 +730,7 @@ static int tear_down(void **state) {
 
 int main(int argc, char **argv) {
     if (argc != 4 && argc != 5) {
-        fprintf(stderr, "usage: test_view VIEWER LINEAO gl|vk [NAME]\n");
+        fprintf(stderr, "usage: test_view VIEWER LINEAO gl|vk [NAME|long_*]\n");
         return 2;
     }
     fixture f = {argv[3], "", NULL};
@@ -664,10 +745,16 @@ int main(int argc, char **argv) {
         {"follows_the_monitor", follows_the_monitor, NULL, clean_up, &f},
         {"picks_and_opens", picks_and_opens, NULL, clean_up, &f},
         {"mixes", mixes, NULL, clean_up, &f},
+        {"long_places_on_trees", long_places_on_trees, NULL, clean_up, &f},
+        {"long_images_of_lines", long_images_of_lines, NULL, clean_up, &f},
+        {"long_images_of_trees", long_images_of_trees, NULL, clean_up, &f},
+        {"long_images_of_surfaces", long_images_of_surfaces, NULL, clean_up, &f},
     };
     void *state = &f;
     if (argc > 4) /* those of this name */
         cmocka_set_test_filter(argv[4]);
+    else
+        cmocka_set_skip_filter("long_*");
     if (set_up(&state) != 0)
         return 1;
     int failed = cmocka_run_group_tests_name(f.backend, tests, NULL, NULL);
