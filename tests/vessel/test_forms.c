@@ -138,6 +138,38 @@ static void sections(void **state) {
     done(&s);
 }
 
+/* A straight vessel of 2 mm, uncertain by 0.4 at one end and 0.8 at the other: the surface goes up
+   to that from the radius, in and out, and no farther. */
+static void amplitudes(void **state) {
+    static const float positions[] = {0, 0, 0, 40, 0, 0}, radii[] = {2, 2};
+    static const sdv_segment segments[] = {{0, 1}};
+    uint32_t seed = 5, i;
+    float low = 0, high = 0;
+    scene s;
+    (void)state;
+    make(&s, 2, positions, radii, segments, 1, 1);
+    s.amplitude[0] = 0.4f;
+    s.amplitude[1] = 0.8f;
+    s.tree.node_attributes = s.attributes;
+    sdv_grid_free(&s.grid);
+    assert_int_equal(sdv_grid_build(NULL, &s.tree, NULL, &s.grid), LAO_OK);
+    for (i = 0; i < 2000; i++) {
+        float turn = between(&seed, 0, 1), x = between(&seed, 3, 37), off;
+        sdv_ray ray;
+        sdv_hit hit;
+        memset(&ray, 0, sizeof ray);
+        ray.direction = lao_v3_make(0, -lao_cos_turns(turn), -lao_sin_turns(turn));
+        ray.origin = lao_v3_along(lao_v3_make(x, 0, 0), ray.direction, -15);
+        sdv_trace(&s.grid, &ray, &hit);
+        assert_int_equal(hit.cone, 0);
+        off = (15 - hit.t - 2) / (0.4f + 0.4f * x / 40);
+        low = lao_min(low, off);
+        high = lao_max(high, off);
+    }
+    assert_true(low >= -1.02f && low < -0.5f && high <= 1.02f && high > 0.5f);
+    done(&s);
+}
+
 static void lipschitz(void **state) {
     uint32_t seed = 3, i, outside = 0, inside = 0;
     scene s;
@@ -267,9 +299,9 @@ static void moved(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(noise),     cmocka_unit_test(sections), cmocka_unit_test(lipschitz),
-        cmocka_unit_test(gradients), cmocka_unit_test(rays),     cmocka_unit_test(round_forms),
-        cmocka_unit_test(moved),
+        cmocka_unit_test(noise),       cmocka_unit_test(sections),  cmocka_unit_test(amplitudes),
+        cmocka_unit_test(lipschitz),   cmocka_unit_test(gradients), cmocka_unit_test(rays),
+        cmocka_unit_test(round_forms), cmocka_unit_test(moved),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

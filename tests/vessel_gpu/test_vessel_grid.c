@@ -204,6 +204,8 @@ static void all_that_reads_lists(void **state) {
     settings.near_miss = SDV_NEAR_MISS_EXACT;
     settings.field_shadow = 1;
     check_tree(&s.tree, 40, NULL, &settings);
+    subject_form(&s, 7);
+    check_tree(&s.tree, 40, NULL, &settings);
     subject_free(&s);
 }
 

@@ -371,6 +371,8 @@ static void with_shapes(void **state) {
     subject_make(&tree, 60, 1);
     for (uint32_t count = 1; count <= SHAPES; count++) {
         render_result results[2];
+        if (count == SHAPES) /* the last time with forms */
+            subject_form(&tree, 7);
         scene_make(&s, &tree);
         carving_make(&c, count);
         s.vessel.near_miss = (float)(count % 3);
