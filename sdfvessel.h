@@ -3982,8 +3982,12 @@ static void sdv__cone_set(const sdv_tree *tree, const uint32_t *nodes, lao_v4 *c
 /* ---- forms */
 static lao_v3 sdv__minor(const float *axes, uint32_t node) {
     const lao_v3 z = lao_v3_make(0.0f, 0.0f, 1.0f);
-    const float *v = axes + 3 * (size_t)node;
-    return axes ? lao_v3_unit(lao_v3_make(v[0], v[1], v[2]), z) : z;
+    const float *v;
+    if (!axes) {
+        return z;
+    }
+    v = axes + 3 * (size_t)node;
+    return lao_v3_unit(lao_v3_make(v[0], v[1], v[2]), z);
 }
 /* The mean of the nodes' sections, at a right angle to the cone. */
 static lao_v4 sdv__section(const sdv_tree *tree, const uint32_t *nodes, const lao_v4 *cone) {

@@ -20,20 +20,20 @@ typedef struct cli_wall {
     double thinnest;      /* mm */
     uint32_t decimated;   /* triangles that the mesh had before it was decimated; 0: it was not */
     uint32_t decimated_to;
-    bool made;            /* the mesh is from marching cubes, with their stairs */
-    bool turned;          /* it is open, seemed inside out and was turned round */
-    bool placed;          /* the origin is that of lines or others in the scene, not its own */
-    vsf_mesh mesh;        /* positions in mm, minus scene.origin */
-    cli_scene scene;      /* a set that has the object, and one of lines unless there are none */
+    bool made;       /* the mesh is from marching cubes, with their stairs */
+    bool turned;     /* it is open, seemed inside out and was turned round */
+    bool placed;     /* the origin is that of lines or others in the scene, not its own */
+    vsf_mesh mesh;   /* positions in mm, minus scene.origin */
+    cli_scene scene; /* a set that has the object, and one of lines unless there are none */
     cli_source line_source;
     vsf_near near;
     bool lit; /* `near` is there */
     vsf_object object;
     vsf_settings settings;
-    double range[2];  /* of --value */
-    double curvature; /* median, 1/mm; 0: not yet known */
+    double range[2];      /* of --value */
+    double curvature;     /* median, 1/mm; 0: not yet known */
     uint32_t contours[2]; /* sets of the scene that show vsf_feature 0 and 1; 0: not yet there */
-    colour_map map;   /* of --wall-colormap */
+    colour_map map;       /* of --wall-colormap */
 } cli_wall;
 
 /* Reads or makes mesh and lines and all numbers that do not depend on the camera. place: (Optional)

@@ -97,7 +97,7 @@ static void open_text(view *v, char *words, const char *const *files, uint32_t c
             *at++ = '\0';
         list[said++] = at;
     }
-    while (said + added < MOST && added < count) {
+    while (files && said + added < MOST && added < count) {
         list[said + added] = files[added];
         added++;
     }

@@ -1130,7 +1130,7 @@ static void attributes_follow_their_points(void **state) {
     f.set.times = times;
     f.set.colors = colors;
     assert_ok(lao_lines_update(f.context, f.lines, &f.set));
-    assert_int_equal(core_seen.buffer_count, 3); /* points, colors, order of segments */
+    assert_int_equal(core_seen.buffer_count, 3);           /* points, colors, order of segments */
     assert_int_equal(core_seen.buffers[0].texel_count, 7); /* ghost 1 2 4 5 6 ghost */
     t = core_seen.buffers[0].texels;
     c = (const uint8_t *)core_seen.buffers[1].texels;

@@ -141,7 +141,7 @@ static void test_farthest_depth(void **state) {
         render_draw(&devices[d], &shot, &result);
         const render_image *z = render_find(&result, "zbuffer", 0);
         const render_image *far = render_find(&result, "far", 3);
-        const float *last = (const float *)z->data, *first = (const float *)far->data;
+        const float *last = (const void *)z->data, *first = (const void *)far->data;
         uint32_t closed = 0;
         assert_int_equal(far->width, SIZE / 8);
         for (uint32_t y = 0; y < SIZE; y++) {

@@ -179,8 +179,8 @@ static void trees_as_they_are(void **state) {
             shoot(&vessel.tree, &grid, &seed, &sum);
         printf("%s: %u segments, %u of %u hit, %u disagree, off the surface by %.1e cells, normals "
                "by %.2g degrees, near misses by %.1e cells, %u ties, %u graze (%.2g cells)\n",
-               files[i].name, grid.cone_count, sum.hits, RAYS, sum.wrong, sum.off, sum.turned,
-               sum.missed, sum.ties, sum.grazing, sum.late);
+               files[i].name, grid.cone_count, sum.hits, (unsigned)RAYS, sum.wrong, sum.off,
+               sum.turned, sum.missed, sum.ties, sum.grazing, sum.late);
         assert_in_range(sum.hits, RAYS / 5, RAYS);
         assert_int_equal(sum.wrong, 0);
         assert_true(sum.off < 1e-3);
