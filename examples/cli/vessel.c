@@ -300,7 +300,7 @@ static bool make_points(cli_tree *tree, io_lines *lines) {
         lines->point_count = tree->mesh.vertex_count;
         return lines->points != NULL;
     }
-    float *to = lines->points = cli_new(6 * (size_t)t->node_count + 2 * CLI_SHAPES, 12);
+    float *to = lines->points = cli_new(6 * (size_t)t->node_count + 2 * (size_t)CLI_SHAPES, 12);
     if (!to)
         return false;
     for (uint32_t i = 0; i < 6 * t->node_count; i++, to += 3) {

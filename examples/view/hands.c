@@ -384,7 +384,7 @@ static void draw_ball(const view *v, const double ball[4], uint32_t color) {
     double last[3];
     for (int i = 0; i <= PARTS; i++) {
         double angle = 6.283185307179586 * i / PARTS, at[3];
-        for (int k = 0; k < 3; k++)
+        for (size_t k = 0; k < 3; k++)
             at[k] = ball[k] + ball[3] * (cos(angle) * (double)shot.view[4 * k] +
                                          sin(angle) * (double)shot.view[4 * k + 1]);
         if (i)
