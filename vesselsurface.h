@@ -395,8 +395,11 @@ typedef struct vsf_near {
 VSF_API lao_result vsf_near_make(const vsf_host *host, const vsf_near_desc *desc, vsf_near *table);
 VSF_API void vsf_near_free(vsf_near *table);
 /* Another beta (ms^2, > 0). Where lit parts grow, the old distances bound the new ones. The same
-   bits as vsf_near_make; the old table stays until the new one is done, and on failure. Fails with
-   NULL_ARGUMENT, SETTING, MEMORY, CANCELLED. */
+   bits as vsf_near_make; the old table stays until the new one is done, and on failure. For
+   programs in which the highlight changes while the lines stay, such as lineao-view: a program that
+   makes one table, as `lineao surface` does for all its frames, gives vsf_near_make the beta at
+   once. A vsf_object that showed the old table needs its `step` set to VSF_NONE, so that
+   vsf_object_time takes the new distances. Fails with NULL_ARGUMENT, SETTING, MEMORY, CANCELLED. */
 VSF_API lao_result vsf_near_update(const vsf_host *host, vsf_near *table, double beta);
 /* Distances (mm) at a step; VSF_FAR where nothing is lit. `distances`: vertex_count floats. A step
    beyond the last is the last. Thread: any. */

@@ -174,9 +174,11 @@ static bool arrange(const picture *p, legend_side side, const legend *legends, u
         deepest = depth > deepest ? depth : deepest;
         used += in_line ? 0 : depth + margin;
     }
-    for (uint32_t i = 0; i < count && in_line; i++) /* the middle of all at the side's */
-        move(&out->each[i], bottom ? (along - at + margin) / 2 : 0,
-             bottom ? 0 : (along - at + margin) / 2);
+    for (uint32_t i = 0; i < count && in_line; i++) { /* one edge, their middle at the side's */
+        layout *l = &out->each[i];
+        int64_t middle = (along - at + margin) / 2, edge = l->box[bottom ? 3 : 2] - deepest;
+        move(l, bottom ? middle : side == LEGEND_RIGHT ? edge : 0, bottom ? edge : middle);
+    }
     out->count = count;
     used += in_line ? deepest + margin : 0;
     return (double)used <= (in_line ? 0.6 : 0.42) * (double)(bottom ? height : width);
