@@ -16,7 +16,7 @@ MODULES="lines vessel surface"
 lines_shaders="fullscreen import_depth export_depth cover far lines lines_rim lines_halo level_zero level_one level_up occlusion smooth shade resolve present"
 vessel_shaders="vessel_lists vessel_sum vessel_start vessel_words vessel_rows vessel_columns vessel_grid vessel_trace vessel_carve vessel_mesh vessel_drawn vessel_depth vessel_pull vessel_push vessel_fill vessel_surface vessel_gather vessel_guide vessel_recall vessel_recall_up vessel_phase vessel_sweep vessel_uv vessel_ink vessel_shade"
 vessel_header="sdfvessel.h"
-surface_shaders="surface_measure surface_mesh surface_nearest surface_left surface_layers surface_shadow surface_effect surface_focus surface_blur"
+surface_shaders="surface_measure surface_mesh surface_nearest surface_left surface_layers surface_shadow surface_effect surface_focus surface_tiles surface_blur"
 surface_header="vesselsurface.h"
 lines_header="" # lineao.h's text stands in front of all
 shaders_of() {
