@@ -2290,7 +2290,7 @@ LAO_FN float sdv_lines_ink(float x, float dark, float wide) {
    is wide, or than so many pixels. 1: as they are. radius, period, pixel: mm. */
 #define SDV_INK_LEAST_PIXELS 5.0f
 LAO_FN float sdv_ink_finer(float radius, float period, float pixel) {
-    LAO_EXACT float room = lao_max(radius, SDV_INK_LEAST_PIXELS * pixel);
+    LAO_EXACT float room = lao_max(1.5f * radius, SDV_INK_LEAST_PIXELS * pixel);
     LAO_EXACT float r = lao_min(lao_max(period / room, 1.0f), 32.0f);
     return r;
 }

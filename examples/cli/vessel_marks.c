@@ -168,15 +168,16 @@ static void place_all(cli_marks *n, const uint32_t size[2]) {
 
 /* In the largest letters of a few sizes that leave room for all, else in the smallest ones. */
 static void fit_all(cli_marks *n, double size, const uint32_t room[2]) {
-    static const double parts[] = {1.1, 0.95, 0.8};
+    static const double parts[] = {1, 0.85, 0.7};
     enum { LEGIBLE = 8 };
+    double most = fmax(fmin(0.9 * size, 0.05 * fmin(room[0], room[1])), LEGIBLE + 1);
     n->style.bold = true;
     for (int k = 0; k < 3; k++)
         n->style.outline[k] = 1;
     for (size_t i = 0; i < sizeof parts / sizeof *parts; i++) {
-        if (i > 0 && (n->omitted == 0 || parts[i] * size < LEGIBLE))
+        if (i > 0 && (n->omitted == 0 || parts[i] * most < LEGIBLE))
             break;
-        n->style.size = parts[i] * size;
+        n->style.size = parts[i] * most;
         n->style.outline_width = fmax(1.2, 0.14 * n->style.size);
         place_all(n, room);
     }
@@ -239,7 +240,21 @@ bool cli_marks_make(const cli_tree *tree, const cli_shot *shot, cli_session *ses
     return ok;
 }
 
-bool cli_marks_draw(const cli_marks *numbers, uint32_t view, const int64_t corner[2], picture *p) {
+/* In the lower left corner of the tree's picture: what the numbers leave open. */
+static bool draw_note(const cli_marks *n, const int64_t corner[2], uint32_t height, picture *p) {
+    char text[96] = "";
+    if (n->omitted > 0)
+        snprintf(text, sizeof text, "no room for %u of %u numbers", n->omitted, n->count);
+    if (n->hidden > 0)
+        snprintf(text + strlen(text), sizeof text - strlen(text), "%s(n): hidden",
+                 n->omitted > 0 ? "; " : "");
+    return !*text || text_draw(p, corner[0] + (int64_t)(0.5 * n->style.size),
+                               corner[1] + (int64_t)(height - 1.4 * n->style.size), TEXT_LEFT, text,
+                               &n->style);
+}
+
+bool cli_marks_draw(const cli_marks *numbers, uint32_t view, const int64_t corner[2],
+                    uint32_t height, picture *p) {
     bool ok = true;
     for (uint32_t i = numbers->count; ok && i-- > 0;) { /* the nearest is on top */
         char text[16];
@@ -247,6 +262,7 @@ bool cli_marks_draw(const cli_marks *numbers, uint32_t view, const int64_t corne
         ok = !numbers->labels[view][i].placed ||
              cli_label_draw(&numbers->labels[view][i], text, &numbers->style, corner, p);
     }
+    ok = ok && (view > 0 || draw_note(numbers, corner, height, p));
     return ok || cli_fail("out of memory");
 }
 

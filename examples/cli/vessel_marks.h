@@ -28,8 +28,10 @@ typedef struct cli_marks {
  * it in any case. */
 bool cli_marks_make(const cli_tree *tree, const cli_shot *shot, cli_session *session, double size,
                     cli_marks *out);
-/* view 0: the tree's, 1: the layout's, whose left upper corner is given. False: reported. */
-bool cli_marks_draw(const cli_marks *numbers, uint32_t view, const int64_t corner[2], picture *p);
+/* view 0: the tree's, with a line about those left out and hidden; 1: the layout's. corner: its
+ * left upper one; height: px. False: reported. */
+bool cli_marks_draw(const cli_marks *numbers, uint32_t view, const int64_t corner[2],
+                    uint32_t height, picture *p);
 void cli_marks_free(cli_marks *numbers);
 
 #endif

@@ -60,10 +60,9 @@ uint32_t cli_tree_at_risk(const cli_tree *tree, float *least) {
     return count;
 }
 
-/* "2: 7 of 310 branches nearer than 15 mm; nearest 3.2 mm; 2 not numbered; (n): hidden" */
-static bool head(const cli_page *page, const cli_tree *tree, const cli_marks *numbers,
-                 uint32_t column, picture *p) {
-    char text[200], number[32] = "", omitted[48] = "";
+/* "2: 7 of 310 branches nearer than 15 mm; nearest 3.2 mm" */
+static bool head(const cli_page *page, const cli_tree *tree, uint32_t column, picture *p) {
+    char text[160], number[32] = "";
     float least;
     int64_t at[2];
     uint32_t count = cli_tree_at_risk(tree, &least), all = 0;
@@ -71,11 +70,8 @@ static bool head(const cli_page *page, const cli_tree *tree, const cli_marks *nu
         all += isnan(tree->distances[i]) ? 0 : 1;
     if (page->columns > 1)
         snprintf(number, sizeof number, "%u: ", column + 1);
-    if (numbers->omitted > 0)
-        snprintf(omitted, sizeof omitted, "; no room for numbers of %u", numbers->omitted);
-    snprintf(text, sizeof text, "%s%u of %u branches nearer than %g mm; nearest %.1f mm%s%s",
-             number, count, all, tree->risk, (double)least, omitted,
-             numbers->hidden > 0 ? "; (n): hidden" : "");
+    snprintf(text, sizeof text, "%s%u of %u branches nearer than %g mm; nearest %.1f mm", number,
+             count, all, tree->risk, (double)least);
     text_style style;
     memset(&style, 0, sizeof style);
     style.size = text_size(page->options);
@@ -115,9 +111,9 @@ static bool draw_column(const cli_page *page, const cli_tree *tree, const cli_sh
         corner(page, column, view, at);
         picture_over(p, at[0], at[1], views[view]);
         frame(p, at, page->panel);
-        ok = cli_marks_draw(&numbers, view, at, p);
+        ok = cli_marks_draw(&numbers, view, at, page->panel[1], p);
     }
-    ok = ok && (!tree->aim || head(page, tree, &numbers, column, p));
+    ok = ok && (!tree->aim || head(page, tree, column, p));
     cli_marks_free(&numbers);
     picture_free(&solid);
     return ok;

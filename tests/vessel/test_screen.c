@@ -563,8 +563,8 @@ static void ink(void **state) {
 static void fine_ink(void **state) {
     enum { N = 20, STEPS = 4000 };
     (void)state;
-    assert_true(sdv_ink_finer(9, 9, 1) == 1 && sdv_ink_finer(40, 9, 1) == 1);
-    assert_near(sdv_ink_finer(6, 9, 1), 1.5, 1e-6);
+    assert_true(sdv_ink_finer(6, 9, 1) == 1 && sdv_ink_finer(40, 9, 1) == 1);
+    assert_near(sdv_ink_finer(4, 9, 1), 1.5, 1e-6);
     assert_near(sdv_ink_finer(1, 9, 1), 9 / (double)SDV_INK_LEAST_PIXELS, 1e-6);
     assert_true(sdv_ink_finer(1, 3, 1) == 1 && sdv_ink_finer(0, 1e9f, 1e-9f) == 32);
     for (int style = SDV_STYLE_STIPPLE; style <= SDV_STYLE_CROSSHATCH; style++) {
