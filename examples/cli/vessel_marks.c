@@ -147,7 +147,10 @@ static void write_number(const cli_marks *n, uint32_t view, uint32_t index, char
     snprintf(text, 16, view == 0 && !n->seen[index] ? "(%u)" : "%u", index + 1);
 }
 
+/* The nearest first, until numbers cover so much of a picture that they hide what they name. */
 static void place_all(cli_marks *n, const uint32_t size[2]) {
+    const double most = (double)size[0] * size[1] / 32;
+    double covered = 0;
     n->omitted = n->hidden = 0;
     for (uint32_t i = 0; i < 2 * n->count; i++) {
         cli_label *label = &n->labels[i % 2][i / 2];
@@ -158,9 +161,12 @@ static void place_all(cli_marks *n, const uint32_t size[2]) {
         label->placed = false;
     }
     for (uint32_t i = 0; i < n->count; i++) {
-        bool both = cli_label_place(n->labels[0], n->count, i, size) &&
+        cli_label *in_tree = &n->labels[0][i], *in_layout = &n->labels[1][i];
+        double area = 4 * in_tree->half[0] * in_tree->half[1];
+        bool both = covered + area <= most && cli_label_place(n->labels[0], n->count, i, size) &&
                     cli_label_place(n->labels[1], n->count, i, size);
-        n->labels[0][i].placed = n->labels[1][i].placed = both;
+        in_tree->placed = in_layout->placed = both;
+        covered += both ? area : 0;
         n->omitted += !both;
         n->hidden += both && !n->seen[i];
     }
