@@ -197,7 +197,7 @@ static bool add_settings(document *doc, const lao_module *module, const char *ti
     return true;
 }
 
-static const char *file_name(const char *path) {
+const char *document_file_name(const char *path) {
     const char *slash = strrchr(path, '/');
     return slash ? slash + 1 : path;
 }
@@ -205,7 +205,7 @@ static const char *file_name(const char *path) {
 /* Of one set: a tree's, a wall's, or those of its lines. */
 static bool add_set_settings(document *doc, uint32_t i) {
     const cli_set *set = &doc->scene->sets[i];
-    const char *name = file_name(set->name);
+    const char *name = document_file_name(set->name);
     if (set->tree)
         return add_settings(doc, sdv_module(), name, &set->tree->settings, i);
     if (set->wall)
@@ -318,8 +318,8 @@ void document_inherit(document *doc, const document *from) {
         document_settings *to = &doc->settings[i];
         const document_settings *s = &from->settings[i];
         for (uint32_t k = 0; to->module == s->module && k < s->module->setting_count; k++) {
-            uint64_t bit = (uint64_t)1 << k;
-            if (!(s->edited & bit))
+            uint64_t bit = (uint64_t)1 << k, said = *(const uint64_t *)to->now;
+            if (!(s->edited & said & bit)) /* said: an edit since is not among the words */
                 continue;
             values_of(to->base)[k] = values_of(s->base)[k];
             *(uint64_t *)to->base = (*(uint64_t *)to->base & ~bit) | (*(uint64_t *)s->base & bit);
@@ -336,14 +336,89 @@ float document_value(const document *doc, uint32_t index, int setting) {
     return values[setting];
 }
 
-bool document_reloads(const document *doc, uint32_t index, int setting) {
-    static const char *const names[] = {"near_steps", "period", "highlight_beta"};
+document_need document_needs(const document *doc, uint32_t index, int setting) {
+    static const struct {
+        const char *name;
+        document_need need;
+    } rows[] = {{"near_steps", NEEDS_OPENING},
+                {"period", NEEDS_OPENING},
+                {"highlight_beta", NEEDS_MEASURES}};
     const char *name = doc->settings[index].module->settings[setting].name;
-    for (size_t i = 0; i < sizeof names / sizeof *names && doc->command == CLI_SURFACE; i++) {
-        if (strcmp(names[i], name) == 0)
-            return true;
+    for (size_t i = 0; i < sizeof rows / sizeof *rows && doc->command == CLI_SURFACE; i++) {
+        if (strcmp(rows[i].name, name) == 0 && (doc->wall.lit || rows[i].need == NEEDS_OPENING))
+            return rows[i].need;
     }
-    return false;
+    return NEEDS_NOTHING;
+}
+
+/* ---- a wall's light ---------------------------------------------------------------------- */
+
+/* The settings of the lines that light it. */
+static document_settings *lighting(const document *doc) {
+    return &doc->settings[doc->settings_count - 1];
+}
+
+void document_wish_measured(document *doc) {
+    bool edited = lighting(doc)->edited & LAO_SET(highlight_beta);
+    const lao_settings *now = lighting(doc)->now;
+    doc->new_beta = edited ? (double)now->highlight_beta : doc->beta;
+}
+
+bool document_measure(document *doc) {
+    return cli_wall_measure(&doc->wall, doc->new_beta);
+}
+
+void document_show_measured(document *doc, bool ok) {
+    document_settings *s = lighting(doc);
+    lao_settings *now = s->now, *base = s->base, before = *now;
+    if (cli_wall_relight(&doc->wall) && doc->wall.trails)
+        base->trail_length = now->trail_length;
+    if (s->edited & LAO_SET(trail_length))
+        now->trail_length = before.trail_length;
+    now->highlight_beta = before.highlight_beta; /* maybe edited since */
+    double shown = doc->wall.near.beta;
+    if (!ok && fabs(shown - doc->beta) > 0)
+        document_set(doc, doc->settings_count - 1, LAO_SETTING_ID_highlight_beta, (float)shown);
+    else if (!ok)
+        document_reset(doc, doc->settings_count - 1, LAO_SETTING_ID_highlight_beta);
+    doc->scene->sets[0].settings.trail_length = now->trail_length; /* they share theirs */
+    doc->revision++;
+}
+
+/* ---- the lens ---------------------------------------------------------------------------- */
+
+/* Another value in the words for a flag's; returns it as it stands there. NULL: reported. */
+static const char *replace_value(document *doc, const char *flag, const char *value) {
+    size_t length = strlen(flag);
+    for (uint32_t i = doc->word_count; i-- > 0;) {
+        const char *word = doc->words[i];
+        bool joined = strncmp(word, flag, length) == 0 && word[length] == '=';
+        bool apart = i > 0 && strcmp(doc->words[i - 1], flag) == 0;
+        if (!joined && !apart)
+            continue;
+        size_t room = length + strlen(value) + 2;
+        char *text = cli_new(room, 1);
+        if (!text)
+            return NULL;
+        snprintf(text, room, "%s%s%s", joined ? flag : "", joined ? "=" : "", value);
+        free(doc->words[i]);
+        doc->words[i] = text;
+        return text + (joined ? length + 1 : 0);
+    }
+    return NULL;
+}
+
+bool document_move_lens(document *doc, const double circle[3]) {
+    cli_lens_option *lenses[2] = {&doc->options.vessel.lens, &doc->lens.options.vessel.lens};
+    char text[96];
+    snprintf(text, sizeof text, "circle:%.4f,%.4f,%.4f", circle[0], circle[1], circle[2]);
+    const char *value = replace_value(doc, "--lens", text);
+    for (int i = 0; value && i < 2; i++) {
+        lenses[i]->text = value;
+        cli_numbers(value + strlen("circle:"), lenses[i]->circle, 3);
+    }
+    cli_lens_aim(&doc->lens, &doc->tree, &doc->shot);
+    return value != NULL;
 }
 
 /* ---- time -------------------------------------------------------------------------------- */
@@ -433,7 +508,7 @@ document *document_open(const char *const *words, uint32_t count, uint32_t added
     memset(doc, 0, sizeof *doc);
     bool ok = take_words(doc, words, count, added) && parse(doc) && load(doc) &&
               cli_shot_make(&doc->options, doc->scene, &doc->shot) && aim(doc) &&
-              list_settings(doc);
+              list_settings(doc) && pick_prepare(doc->scene, &doc->pickable);
     if (!ok) {
         document_close(doc);
         return NULL;
@@ -444,6 +519,7 @@ document *document_open(const char *const *words, uint32_t count, uint32_t added
         doc->settings[0].edited |=
             doc->tree.settings.set & SDV_SET(ssp_period) & ~doc->tree.source->vessel.set;
     doc->added = added > 0;
+    doc->beta = doc->wall.near.beta;
     warn(doc);
     return doc;
 }
@@ -451,6 +527,7 @@ document *document_open(const char *const *words, uint32_t count, uint32_t added
 void document_close(document *doc) {
     if (!doc)
         return;
+    pick_free(&doc->pickable);
     cli_scene_free(&doc->lines);
     if (doc->command == CLI_VESSEL) {
         cli_tree_free(&doc->tree);
@@ -469,9 +546,9 @@ void document_close(document *doc) {
 }
 
 const char *document_name(const document *doc) {
-    return file_name(doc->options.file_count && doc->command == CLI_RENDER
-                         ? doc->options.files[0].path
-                         : doc->scene->sets[0].name);
+    return document_file_name(doc->options.file_count && doc->command == CLI_RENDER
+                                  ? doc->options.files[0].path
+                                  : doc->scene->sets[0].name);
 }
 
 bool document_surround(void *user, picture *p) {

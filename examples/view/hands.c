@@ -163,6 +163,8 @@ static void cut(view *v, const double at[3]) {
     free(list.text);
 }
 
+/* ---- lenses ------------------------------------------------------------------------------ */
+
 static void drop_lens(word_list *list) {
     drop(list, "--lens", NULL);
     drop(list, "--lens-style", NULL);
@@ -170,22 +172,79 @@ static void drop_lens(word_list *list) {
     drop(list, "--lens-tree", NULL);
 }
 
-/* A ball with another look; the one that was there moves here. */
-static void look_in(view *v, const double at[3]) {
+/* A ball or a circle with another look; the one that was there moves here. */
+static void look_in(view *v, const char *where) {
     const cli_vessel_options *o = &v->doc->options.vessel;
     word_list list;
-    char text[HANDS_TEXT];
     begin_words(v, &list);
-    snprintf(text, sizeof text, "sphere:%.6g,%.6g,%.6g,%.4g", at[0], at[1], at[2],
-             2 * (double)v->hands.lens);
     drop(&list, "--lens", NULL);
-    add(&list, "--lens", text);
+    add(&list, "--lens", where);
     if (!o->lens.text) /* far from any other look */
         add(&list, "--lens-style", o->style && strcmp(o->style, "ink") == 0 ? "default" : "ink");
-    trace(v, "placed --lens %s", text);
+    trace(v, "placed --lens %s", where);
     reopen(v, &list);
     free(list.text);
 }
+
+static void look_in_ball(view *v, const double at[3]) {
+    char text[HANDS_TEXT];
+    snprintf(text, sizeof text, "sphere:%.6g,%.6g,%.6g,%.4g", at[0], at[1], at[2],
+             2 * (double)v->hands.lens);
+    look_in(v, text);
+}
+
+static void look_in_circle(view *v, const double at[3]) {
+    char text[HANDS_TEXT];
+    const window_rect *p = &v->picture;
+    float place[2];
+    if (!stage_place(v, at, place))
+        return;
+    snprintf(text, sizeof text, "circle:%.4f,%.4f,0.25",
+             ((double)place[0] - p->x) / fmax(1, p->width),
+             ((double)place[1] - p->y) / fmax(1, p->height));
+    look_in(v, text);
+}
+
+/* The circle that can be moved, px; false: there is none. */
+static bool circle_of(const view *v, double circle[3]) {
+    const cli_lens_option *lens = &v->doc->options.vessel.lens;
+    const window_rect *p = &v->picture;
+    if (!v->open || v->doc->command != CLI_VESSEL || !lens->text || !lens->is_circle)
+        return false;
+    circle[0] = p->x + lens->circle[0] * p->width;
+    circle[1] = p->y + lens->circle[1] * p->height;
+    circle[2] = lens->circle[2] * p->height;
+    return true;
+}
+
+bool hands_grabs(const view *v, double x, double y) {
+    double circle[3];
+    return !v->compare && circle_of(v, circle) &&
+           fabs(hypot(x - circle[0], y - circle[1]) - circle[2]) < 7 * (double)ui_scale();
+}
+
+static void move_circle(view *v, double x, double y, double radius) {
+    const double *now = v->doc->options.vessel.lens.circle;
+    const double circle[3] = {fmax(0, fmin(1, now[0] + x)), fmax(0, fmin(1, now[1] + y)), radius};
+    document_move_lens(v->doc, circle);
+    v->steady.last = glfwGetTime();
+    v->dirty = true;
+}
+
+void hands_grab(view *v) {
+    remember(v, document_words(v->doc, &v->shot));
+}
+
+void hands_drag(view *v, double x, double y) {
+    move_circle(v, x / fmax(1, v->picture.width), y / fmax(1, v->picture.height),
+                v->doc->options.vessel.lens.circle[2]);
+}
+
+void hands_let_go(view *v) {
+    trace(v, "lens %s", v->doc->options.vessel.lens.text);
+}
+
+/* ---- back -------------------------------------------------------------------------------- */
 
 static void take_away(view *v) {
     word_list list;
@@ -282,8 +341,13 @@ static void tree_buttons(view *v) {
         cut(v, v->picked.at);
     ui_help("takes a ball away, to look inside");
     if (ui_small_button("Lens here"))
-        look_in(v, v->picked.at);
-    ui_help("a ball in which the vessels have another look (--lens-style)");
+        look_in_ball(v, v->picked.at);
+    ui_help("a ball around this place, in which the vessels have another look");
+    ui_same_line();
+    if (ui_small_button("Round lens"))
+        look_in_circle(v, v->picked.at);
+    ui_help("a circle on the picture; what is seen through it has another look. Drag its ring to "
+            "move it");
 }
 
 void hands_buttons(view *v) {
@@ -349,6 +413,12 @@ void hands_tree(view *v) {
                              "radius of the target %.3g mm") ||
                    h->stale;
     }
+    if (o->lens.text && o->lens.is_circle) {
+        float radius = (float)o->lens.circle[2];
+        ui_width(-1);
+        if (ui_slider("##lens", &radius, 0.02f, 1, "lens of %.2f picture heights"))
+            move_circle(v, 0, 0, (double)radius);
+    }
     if (h->count && ui_button("Undo"))
         take_back(v);
     if (h->count)
@@ -368,12 +438,6 @@ void hands_tree(view *v) {
 
 /* ---- marks ------------------------------------------------------------------------------- */
 
-static void draw_way(const view *v, const double a[3], const double b[3], uint32_t color) {
-    float from[2], to[2];
-    if (stage_place(v, a, from) && stage_place(v, b, to))
-        ui_draw_line(true, from[0], from[1], to[0], to[1], color, 2 * ui_scale());
-}
-
 /* A ball as a ring around it. */
 static void draw_ball(const view *v, const double ball[4], uint32_t color) {
     enum { PARTS = 48 };
@@ -388,7 +452,7 @@ static void draw_ball(const view *v, const double ball[4], uint32_t color) {
             at[k] = ball[k] + ball[3] * (cos(angle) * (double)shot.view[4 * k] +
                                          sin(angle) * (double)shot.view[4 * k + 1]);
         if (i)
-            draw_way(v, last, at, color);
+            marks_way(v, last, at, color, 2);
         memcpy(last, at, sizeof last);
     }
 }
@@ -403,7 +467,7 @@ static void draw_path(const view *v, const char *text, uint32_t color) {
         if (!cli_numbers(point, at, 3))
             return;
         if (!first)
-            draw_way(v, last, at, color);
+            marks_way(v, last, at, color, 2);
         memcpy(last, at, sizeof last);
         text += length + (text[length] == ':');
     }
@@ -421,6 +485,12 @@ void hands_marks(const view *v) {
             draw_path(v, aimed->text, green);
         else if (cli_numbers(aimed->text, ball, 4))
             draw_ball(v, ball, ochre);
+    }
+    double circle[3];
+    if (!v->compare && circle_of(v, circle)) {
+        bool near = hands_grabs(v, v->pointer.x, v->pointer.y);
+        ui_draw_ring(true, (float)circle[0], (float)circle[1], (float)circle[2],
+                     near || v->lensing ? 0xffe09a4a : 0xff808080, (near ? 3 : 1.5f) * ui_scale());
     }
     float end[2];
     if (v->hands.pathing && stage_place(v, v->hands.end, end))

@@ -178,6 +178,7 @@ static bool open(view *v, const arguments *a) {
 
 static void shut(view *v) {
     const window_backend *backend = v->window.backend;
+    loader_stop(v->loader);
     hands_forget(v);
     stage_close(v);
     if (v->window.glfw && (v->window.gl || v->window.vk))
@@ -209,6 +210,12 @@ static bool open_changed(view *v, document *doc) {
     v->player.speed = speed;
     hands_begin(v);
     return true;
+}
+
+static void take_measured(view *v) {
+    bool ok;
+    if (v->open && loader_measured(v->loader, &ok) == v->doc)
+        stage_relight(v, ok);
 }
 
 static void take_document(view *v) {
@@ -282,7 +289,9 @@ static bool draw(view *v) {
     }
     w->backend->end(w);
     double now = glfwGetTime();
-    if (v->frames != before) { /* the picture was drawn */
+    if (v->frames != before) {   /* the picture was drawn */
+        v->pointer.fresh = true; /* and may show something else under the pointer */
+        v->awake += v->awake == 0;
         v->frame_ms =
             1e3 * (now - (v->steady.moving && v->steady.frame > 0 ? v->steady.frame : begin));
         if (v->steady.moving && v->steady.frame > 0)
@@ -305,6 +314,7 @@ static bool wait(view *v) {
         glfwPollEvents();
     else
         glfwWaitEventsTimeout(busy || compared ? 0.05 : 0.5);
+    take_measured(v);
     take_document(v);
     trace_messages(v);
     keep_steady(v, glfwGetTime());
@@ -315,10 +325,15 @@ static bool wait(view *v) {
 }
 
 static void run(view *v) {
+    bool rests = false;
     v->awake = 3;
     while (!v->quit && !glfwWindowShouldClose(v->window.glfw)) {
-        if (wait(v) && !draw(v))
+        bool news = wait(v);
+        if (news && !draw(v))
             glfwWaitEventsTimeout(0.05); /* minimised, or between two sizes */
+        if (!news && !rests)
+            trace(v, "rest");
+        rests = !news;
     }
 }
 

@@ -301,18 +301,6 @@ static void picked_text(view *v, window_rect place) {
     ui_panel_end();
 }
 
-static void mark_picked(const view *v) {
-    float at[2], r = 7 * ui_scale();
-    if (v->picked.kind == PICKED_NOTHING || !stage_place(v, v->picked.at, at) ||
-        at[0] < (float)v->picture.x || at[1] > (float)(v->picture.y + v->picture.height))
-        return;
-    for (int i = 0; i < 4; i++) {
-        float x = i < 2 ? (i ? r : -r) : 0, y = i < 2 ? 0 : (i > 2 ? r : -r);
-        ui_draw_line(true, at[0] + x, at[1] + y, at[0] + 0.3f * x, at[1] + 0.3f * y, 0xff1030f0,
-                     2 * ui_scale());
-    }
-}
-
 static void left(view *v, window_rect place) {
     ui_panel("Panel", place);
     ui_disable(v->film.running);
@@ -337,7 +325,7 @@ static void left(view *v, window_rect place) {
             panel_compare(v);
             ui_tab_end();
         }
-        if (v->open && picked_tree(v->doc, &v->picked) && ui_tab("Tree")) {
+        if (v->open && picked_tree(v->doc->scene, &v->picked) && ui_tab("Tree")) {
             panel_tree(v);
             ui_tab_end();
         }
@@ -415,10 +403,10 @@ void panel_draw(view *v) {
     }
     if (memcmp(&before, &v->picture, sizeof before) != 0)
         v->dirty = true;
-    mark_picked(v);
+    if (v->open)
+        stage_answer(v);
     input_hover(v);
-    tree_marks(v);
-    hands_marks(v);
+    marks_draw(v);
     if (v->compare)
         compare_marks(v);
     film_panel(v);

@@ -77,7 +77,7 @@ static void choose_side(view *v, int side) {
 static bool setting_at(const view *v, int entry, int *index, int *setting) {
     for (uint32_t i = 0; i < v->doc->settings_count; i++) {
         for (uint32_t k = 0; k < v->doc->settings[i].module->setting_count; k++) {
-            if (!document_reloads(v->doc, i, (int)k) && entry-- == 0) {
+            if (document_needs(v->doc, i, (int)k) == NEEDS_NOTHING && entry-- == 0) {
                 *index = (int)i;
                 *setting = (int)k;
                 return true;
