@@ -94,4 +94,11 @@ char *document_joined(const document *doc, const cli_shot *shot);
 /* Can further files join it? Scenes made by code stand alone. */
 bool document_joins(const document *doc);
 
+/* ---- between the files that make a document ---- */
+
+/* Fills doc->settings. False: reported. */
+bool document_list_settings(document *doc);
+/* The values behind the `set` of a struct of settings. */
+float *document_values(void *settings);
+
 #endif
