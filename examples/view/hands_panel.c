@@ -77,7 +77,7 @@ void hands_tree(view *v) {
                     "or to cut it open.");
         return;
     }
-    ui_text_dim(aimed ? (aimed->path ? "Path" : "Target") : "No target");
+    ui_text_dim(!aimed ? "Placed" : aimed->path ? "Path" : "Target");
     if (aimed) {
         ui_text_wrapped(aimed->text);
         ui_width(-1);
@@ -94,7 +94,7 @@ void hands_tree(view *v) {
     if (o->lens.text && o->lens.is_circle) {
         float radius = (float)o->lens.circle[2];
         ui_width(-1);
-        if (ui_slider("##lens", &radius, 0.02f, 1, "lens of %.2f picture heights"))
+        if (ui_slider("##lens", &radius, 0.02f, 1, "radius of the lens %.2f of the height"))
             hands_move_circle(v, 0, 0, (double)radius);
     }
     if (h->count && ui_button("Undo"))

@@ -108,6 +108,9 @@ static void loop(view *v) {
     v->player.loop = !v->player.loop;
     trace(v, "loop %s", v->player.loop ? "on" : "off");
 }
+static void keys_list(view *v) {
+    v->keys = !v->keys;
+}
 static void quit(view *v) {
     v->quit = true;
 }
@@ -137,6 +140,7 @@ static const struct key_row {
     {GLFW_KEY_H, "H", "hide or show the panels", panels, false, false},
     {GLFW_KEY_S, "S", "save the picture", save, true, false},
     {GLFW_KEY_C, "C", "copy the command line of this picture", copy, true, false},
+    {GLFW_KEY_F1, "F1", "this list", keys_list, false, false},
     {GLFW_KEY_ESCAPE, "Esc", "cancel a video or what is being opened; select nothing", forget,
      false, false},
     {GLFW_KEY_Q, "Q", "quit", quit, false, false},

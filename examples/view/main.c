@@ -191,7 +191,8 @@ static void shut(view *v) {
 
 static void title(view *v) {
     char text[256];
-    snprintf(text, sizeof text, "%s - lineao (%s)", document_name(v->doc), v->window.backend->name);
+    snprintf(text, sizeof text, "%s - lineao (%s)", document_name(v->doc),
+             v->window.backend->title);
     glfwSetWindowTitle(v->window.glfw, text);
 }
 
@@ -292,10 +293,12 @@ static bool draw(view *v) {
     if (v->frames != before) {   /* the picture was drawn */
         v->pointer.fresh = true; /* and may show something else under the pointer */
         v->awake += v->awake == 0;
-        v->frame_ms =
-            1e3 * (now - (v->steady.moving && v->steady.frame > 0 ? v->steady.frame : begin));
-        if (v->steady.moving && v->steady.frame > 0)
+        bool follows = v->steady.moving && v->steady.frame > 0;
+        if (v->warm)
+            v->frame_ms = 1e3 * (now - (follows ? v->steady.frame : begin));
+        if (v->warm && follows)
             adapt(v, v->frame_ms);
+        v->warm = true;
     }
     v->steady.frame = v->steady.moving && v->frames != before ? now : 0;
     trace(v, "tick");

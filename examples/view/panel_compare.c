@@ -277,6 +277,7 @@ void compare_draw(view *v) {
     bool news = compare_take(v->compare);
     compare_results(v->compare, r);
     if (news) {
+        v->awake += v->awake == 0; /* the panel, which was drawn before, tells of it */
         c->ready = r[0]->pixels && r[1]->pixels;
         c->count = compare_differences(r[0], r[1]);
         for (int k = 0; k < 2 && c->ready; k++)

@@ -71,6 +71,8 @@ bool stage_open(view *v, document *doc) {
     stage_close(v);
     v->doc = doc;
     v->need = NEEDS_NOTHING;
+    v->frame_ms = 0;
+    v->warm = false;
     v->shot = v->fitted = doc->shot;
     v->aimed = doc->shot.camera;
     find_bounds(v);

@@ -92,10 +92,12 @@ typedef struct view {
     window_rect picture;         /* where in the window; px */
     bool dirty;                  /* the canvas is older than what it shows */
     int drawn[SLOT_CANVASES][2]; /* sizes of what the canvases hold; 0: nothing */
+    bool keys;                   /* their list is shown */
     bool unfitted;               /* the camera has not been fitted into the window */
     int awake;                   /* frames of the user interface still to be drawn */
     bool ground, axes, turntable, panels, quit;
-    double frame_ms;
+    double frame_ms; /* of the last frame that built no shaders; 0: none */
+    bool warm;       /* they are built */
     uint32_t frames;
 
     steady steady;

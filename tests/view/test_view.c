@@ -576,37 +576,27 @@ static void opens_what_is_dropped(desktop *d) {
     }
 }
 
-/* Lines, a tree and a wall in one picture; then without one of them. */
-static void mixes(void **state) {
-    static const char *const words[] = {"line.obj", "tree.swc", "wall.obj", "--ssaa", "1", NULL};
-    fixture *f = *state;
-    desktop *d = f->desktop;
-    write_file("line.obj", "v -20 0 -20\nv 0 5 10\nv 20 0 20\nl 1 2 3\n");
-    write_file("tree.swc", "1 1 0 0 0 4 -1\n2 1 0 0 30 3 1\n3 1 10 0 50 2 2\n4 1 -10 0 50 2 2\n");
-    write_file("wall.obj", "v -15 -15 -5\nv 15 -15 -5\nv 0 15 -5\nv 0 0 35\n"
-                           "f 1 3 2\nf 1 2 4\nf 2 3 4\nf 3 1 4\n");
-    start(f, words);
-    writes_what_the_program_writes(d, "strength");
-    user_types(d, "c");
-    assert_non_null(strstr(viewer_hears(d, "command "), "line.obj --set strength="));
-    user_clicks(d, "Scene");
-    user_clicks(d, "Take away"); /* the last: the wall */
-    assert_string_equal(viewer_hears(d, "opened "), "render line.obj");
-    viewer_hears(d, "frame");
-    user_types(d, "c");
-    const char *command = viewer_hears(d, "command ");
-    assert_null(strstr(command, "wall.obj"));
-    assert_non_null(strstr(command, "tree.swc --ssaa 1"));
-    assert_non_null(strstr(command, "line.obj --set strength="));
-    quit(f);
+/* The pointer rests on a line, a tree, a wall and nothing: each is named, and the picture is not
+ * drawn again for that. */
+static void names_what_it_points_at(desktop *d) {
+    static const struct {
+        float x, z; /* mm */
+        const char *said;
+    } places[] = {{-20, 40, "1 0 0 1"}, {0, 15, "2 1 0 1"}, {25, 12, "3 2 1 "}, {30, 60, "0 "}};
+    uint32_t frames = viewer_said(d, "frame ");
+    for (int i = 0; i < 4; i++) {
+        double scale = PICTURE_HEIGHT / 80.0;
+        user_points(d, (int)(MIDDLE + scale * (double)places[i].x),
+                    (int)(PICTURE_HEIGHT / 2 - scale * ((double)places[i].z - 25)));
+        const char *said = viewer_hears(d, "hovers ");
+        assert_memory_equal(said, places[i].said, strlen(places[i].said));
+    }
+    viewer_rests(d);
+    assert_int_equal(viewer_said(d, "frame "), frames);
 }
 
-/* ---- pointing, picking and comparing
- * ------------------------------------------------------------------- */
-
-/* The pointer rests on lines, a tree and a wall of one picture: each is named, and the picture is
- * not drawn again for that. */
-static void names_what_it_points_at(void **state) {
+/* Lines, a tree and a wall in one picture; then without one of them. */
+static void mixes(void **state) {
     static const char *const words[] = {
         "beam.obj",
         "--width",
@@ -620,10 +610,6 @@ static void names_what_it_points_at(void **state) {
         "--camera",
         "{\"eye\":[0,-200,25],\"center\":[0,0,25],\"up\":[0,0,1],\"ortho_height\":80}",
         NULL};
-    static const struct {
-        float x, z; /* mm */
-        const char *said;
-    } places[] = {{-20, 40, "1 0 0 1"}, {0, 15, "2 1 0 1"}, {25, 12, "3 2 1 "}, {30, 60, "0 "}};
     fixture *f = *state;
     desktop *d = f->desktop;
     write_file("beam.obj", "v -30 0 40\nv -21 0 40\nv -10 0 40\nl 1 2 3\n");
@@ -631,18 +617,24 @@ static void names_what_it_points_at(void **state) {
     write_file("tent.obj", "v 15 -10 0\nv 35 -10 0\nv 25 10 0\nv 25 0 25\n"
                            "f 1 3 2\nf 1 2 4\nf 2 3 4\nf 3 1 4\n");
     start(f, words);
-    uint32_t frames = viewer_said(d, "frame ");
-    for (int i = 0; i < 4; i++) {
-        double scale = PICTURE_HEIGHT / 80.0;
-        user_points(d, (int)(MIDDLE + scale * (double)places[i].x),
-                    (int)(PICTURE_HEIGHT / 2 - scale * ((double)places[i].z - 25)));
-        const char *said = viewer_hears(d, "hovers ");
-        assert_memory_equal(said, places[i].said, strlen(places[i].said));
-    }
-    viewer_rests(d);
-    assert_int_equal(viewer_said(d, "frame "), frames);
+    names_what_it_points_at(d);
+    writes_what_the_program_writes(d, "strength");
+    user_types(d, "c");
+    assert_non_null(strstr(viewer_hears(d, "command "), "beam.obj --width 2 --set strength="));
+    user_clicks(d, "Scene");
+    user_clicks(d, "Take away"); /* the last: the wall */
+    assert_string_equal(viewer_hears(d, "opened "), "render beam.obj");
+    viewer_hears(d, "frame");
+    user_types(d, "c");
+    const char *command = viewer_hears(d, "command ");
+    assert_null(strstr(command, "tent.obj"));
+    assert_non_null(strstr(command, "aim.swc --unit mm"));
+    assert_non_null(strstr(command, "beam.obj --width 2 --set strength="));
     quit(f);
 }
+
+/* ---- picking and comparing
+ * ------------------------------------------------------------------- */
 
 /* Two lines cross, the upper one (the second) nearer to an eye above; a click on the crossing takes
  * that one, beside it the other, into the void nothing. */
@@ -870,7 +862,6 @@ int main(int argc, char **argv) {
         {"follows_the_monitor", follows_the_monitor, NULL, clean_up, &f},
         {"picks_and_opens", picks_and_opens, NULL, clean_up, &f},
         {"mixes", mixes, NULL, clean_up, &f},
-        {"names_what_it_points_at", names_what_it_points_at, NULL, clean_up, &f},
         {"relights_walls", relights_walls, NULL, clean_up, &f},
         {"long_places_on_trees", long_places_on_trees, NULL, clean_up, &f},
         {"long_images_of_lines", long_images_of_lines, NULL, clean_up, &f},
