@@ -179,6 +179,7 @@ static bool open(view *v, const arguments *a) {
 static void shut(view *v) {
     const window_backend *backend = v->window.backend;
     loader_stop(v->loader);
+    document_close(v->next);
     hands_forget(v);
     stage_close(v);
     if (v->window.glfw && (v->window.gl || v->window.vk))
@@ -208,6 +209,8 @@ static bool open_changed(view *v, document *doc) {
     v->fitted.camera = fitted.camera;
     v->shot.camera = camera;
     v->picked = before;
+    if (picked_on(doc->scene, &before))
+        pick_tell(doc->scene, &v->picked);
     v->player.speed = speed;
     hands_begin(v);
     return true;
@@ -219,14 +222,25 @@ static void take_measured(view *v) {
         stage_relight(v, ok);
 }
 
-static void take_document(view *v) {
+/* A document that has been opened still wants its shaders, which takes the window's own time: a
+ * frame that says so comes first. */
+static document *next_document(view *v, bool *changed) {
+    document *doc = v->next;
     char text[MESSAGE_SIZE];
     float part;
-    bool busy = loader_busy(v->loader, text, &part), compared = v->compare != NULL;
-    document *doc = loader_take(v->loader);
-    bool changed = v->hands.reopening && v->open;
+    bool busy = loader_busy(v->loader, text, &part);
+    *changed = v->next_changed;
+    v->next = doc ? NULL : loader_take(v->loader);
+    v->next_changed = v->next && v->hands.reopening && v->open;
+    v->awake += v->next != NULL;
     if (!busy)
         v->hands.reopening = false;
+    return doc;
+}
+
+static void take_document(view *v) {
+    bool changed, compared = v->compare != NULL;
+    document *doc = next_document(v, &changed);
     if (!doc)
         return;
     v->awake = 3;

@@ -398,15 +398,16 @@ static void status_line(const char *const *parts, int count, float width) {
 
 static void status(const view *v, window_rect place) {
     char size[32] = "", samples[64] = "", time[64] = "", frame[32] = "";
-    const char *parts[] = {"nothing is open", size, time, samples, frame};
+    const char *parts[] = {v->next ? "building shaders ..." : "nothing is open", size, time,
+                           samples, frame};
     float width;
-    if (v->open) {
+    if (v->open && !v->next) {
         parts[0] = v->compare ? "two pictures" : v->window.backend->title;
         snprintf(size, sizeof size, "%d x %d px", v->picture.width, v->picture.height);
         tell_samples(v, samples);
     }
-    if (v->open && player_timed(v))
-        snprintf(time, sizeof time, "%.0f ms, plays %.3g ms per second", (double)v->shot.time,
+    if (player_timed(v))
+        snprintf(time, sizeof time, "%.4g ms, plays %.3g ms per second", (double)v->shot.time,
                  v->player.speed);
     if (v->open && !v->compare && v->frame_ms > 0)
         snprintf(frame, sizeof frame, "last frame %.0f ms", v->frame_ms);

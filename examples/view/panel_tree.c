@@ -34,6 +34,15 @@ static uint32_t nearest(const ui_area *a, const cli_tree *tree) {
     return best;
 }
 
+/* As the end of the branch has it in the picture. */
+static uint32_t color_at(const cli_tree *tree, uint32_t branch) {
+    uint32_t cone = tree->vessel.tree.parent_segments[tree->reduced.nodes[branch]];
+    if (!tree->colors || cone >= tree->grid.cone_count)
+        return color_of(tree->layout.h[branch], tree->layout.s[branch]);
+    const uint8_t *c = tree->colors + 8 * (size_t)cone + 4;
+    return 0xff000000u | (uint32_t)c[2] << 16 | (uint32_t)c[1] << 8 | c[0];
+}
+
 static void draw(const ui_area *a, const cli_tree *tree) {
     const sdv_reduced *reduced = &tree->reduced;
     for (uint32_t k = 0; k < reduced->node_count; k++) {
@@ -43,8 +52,7 @@ static void draw(const ui_area *a, const cli_tree *tree) {
             continue;
         place_of(a, &tree->layout, parent, from);
         place_of(a, &tree->layout, i, to);
-        ui_draw_line(false, from[0], from[1], to[0], to[1],
-                     color_of(tree->layout.h[i], tree->layout.s[i]), 1.5f * ui_scale());
+        ui_draw_line(false, from[0], from[1], to[0], to[1], color_at(tree, i), 1.5f * ui_scale());
     }
 }
 

@@ -296,7 +296,6 @@ static void pick_tree(const cli_scene *scene, uint32_t set, const pick_ray *ray,
     out->line = hit.cone;
     out->point = tree->grid.cone_nodes[2 * (size_t)hit.cone + 1];
     place(scene, at, out);
-    tell_tree(tree, out);
 }
 
 void pick_node(const cli_scene *scene, const cli_tree *tree, uint32_t node, picked *out) {
@@ -309,8 +308,7 @@ void pick_node(const cli_scene *scene, const cli_tree *tree, uint32_t node, pick
     out->line = tree->vessel.tree.parent_segments[node];
     out->point = node;
     place(scene, at, out);
-    tell_tree(tree, out);
-    tell_place(out);
+    pick_tell(scene, out);
 }
 
 /* ---- surfaces ---------------------------------------------------------------------------- */
@@ -407,6 +405,25 @@ static void pick_surface(const pickable *p, uint32_t set, const pick_ray *ray, d
 
 /* ---- all --------------------------------------------------------------------------------- */
 
+void pick_tell(const cli_scene *scene, picked *of) {
+    const cli_set *set = &scene->sets[of->set];
+    of->text[0] = '\0';
+    switch (of->kind) {
+    case PICKED_LINE:
+        tell_line(scene, of);
+        break;
+    case PICKED_TREE:
+        tell_tree(set->tree, of);
+        break;
+    case PICKED_SURFACE:
+        tell_surface(set, of);
+        break;
+    case PICKED_NOTHING:
+        return;
+    }
+    tell_place(of);
+}
+
 void pick_at(const pickable *p, const cli_shot *shot, double x, double y, double near,
              picked *out) {
     const cli_scene *scene = p->scene;
@@ -429,12 +446,7 @@ void pick_at(const pickable *p, const cli_shot *shot, double x, double y, double
         if (mesh_of(&scene->sets[i]))
             pick_surface(p, i, &ray, &first, out);
     }
-    if (out->kind == PICKED_LINE)
-        tell_line(scene, out);
-    if (out->kind == PICKED_SURFACE)
-        tell_surface(&scene->sets[out->set], out);
-    if (out->kind != PICKED_NOTHING)
-        tell_place(out);
+    pick_tell(scene, out);
 }
 
 const cli_tree *picked_on(const cli_scene *scene, const picked *of) {

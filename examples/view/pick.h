@@ -29,6 +29,8 @@ typedef struct picked {
 /* x, y: -1 .. 1 in the picture, y up. near: how far from a line still counts, in parts of the
  * picture's height. Quick enough to be asked by every movement of a pointer. */
 void pick_at(const pickable *p, const cli_shot *shot, double x, double y, double near, picked *out);
+/* Writes what is known of it now: times and targets change. */
+void pick_tell(const cli_scene *scene, picked *of);
 /* A node of a tree, as if it had been clicked. */
 void pick_node(const cli_scene *scene, const struct cli_tree *tree, uint32_t node, picked *out);
 /* The tree that was picked, or NULL. */

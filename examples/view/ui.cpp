@@ -206,7 +206,7 @@ void ui_panel_end(void) {
 bool ui_dialog(const char *name, window_rect at, bool *open) {
     ImGui::SetNextWindowPos(
         ImVec2((float)at.x + (float)at.width * 0.5f, (float)at.y + (float)at.height * 0.5f),
-        ImGuiCond_Appearing, ImVec2(0.5f, 0.5f));
+        ImGuiCond_Always, ImVec2(0.5f, 0.5f));
     ImGui::SetNextWindowSizeConstraints(ImVec2((float)at.width * 0.5f, 0),
                                         ImVec2((float)at.width, (float)at.height));
     bool shown = ImGui::Begin(name, open,

@@ -80,7 +80,9 @@ typedef struct view {
     cli_listener listener;
     bool trace; /* tells a test what happens, on standard output */
 
-    document *doc; /* NULL: nothing is open yet */
+    document *doc;     /* NULL: nothing is open yet */
+    document *next;    /* is to be shown after the next frame, or NULL */
+    bool next_changed; /* it is this document, changed by hand */
     cli_session session;
     bool open; /* the session is */
     lao_view moving_view;

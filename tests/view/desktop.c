@@ -220,6 +220,8 @@ void viewer_start(desktop *d, const char *program, const char *const *arguments)
     while (*arguments && count < 47)
         words[count++] = *arguments++;
     assert_int_equal(pipe(ends), 0);
+    XTestFakeMotionEvent(d->display, 0, 1599, 999, CurrentTime); /* so that every place is new */
+    XSync(d->display, False);
     d->viewer = fork();
     if (d->viewer == 0) {
         close(ends[0]);
