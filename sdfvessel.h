@@ -1948,6 +1948,12 @@ LAO_FN float sdv_dimmed(float light, float dark, float strength) {
     LAO_EXACT float r = light * lao_clamp01(1.0f - strength * dark);
     return r;
 }
+/* Ambient and diffuse part. From within a vessel one sees walls at grazing angles, which light that
+   walls throw at each other fills: half of the diffuse part comes from everywhere. */
+LAO_FN lao_v2 sdv_light_parts(float ambient, float diffuse, bool inside) {
+    LAO_EXACT float moved = inside ? 0.5f * diffuse : 0.0f;
+    return lao_v2_make(ambient + moved, diffuse - moved);
+}
 /* Phong with a head light; n and l (towards the light) are unit. `light`: what reaches the place of
    all of it. */
 LAO_FN lao_v3 sdv_shade(lao_v3 color, lao_v3 n, lao_v3 l, float ambient, float diffuse,
