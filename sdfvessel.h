@@ -760,7 +760,7 @@ LAO_FN sdv_cone_point sdv_cone_point_make(lao_v3 p, lao_v4 a, lao_v4 b) {
     return c;
 }
 /* Radius of the ball that is nearest to the point. */
-LAO_FN float sdv_cone_radius(sdv_cone_point c, lao_v4 a, lao_v4 b) {
+LAO_FN float sdv_cone_ball_radius(sdv_cone_point c, lao_v4 a, lao_v4 b) {
     LAO_EXACT float radius = a.w + c.place * (b.w - a.w);
     return radius;
 }
@@ -5711,7 +5711,7 @@ SDV_API lao_v3 sdv_smooth_normal(const sdv_grid *grid, lao_v3 p, uint32_t cone, 
 static float sdv__room(const sdv_grid *g, uint32_t cone, lao_v3 p) {
     const lao_v4 *ends = g->cones + 2 * (size_t)cone;
     sdv_cone_point c = sdv_cone_point_make(p, ends[0], ends[1]);
-    float room = sdv_cone_radius(c, ends[0], ends[1]);
+    float room = sdv_cone_ball_radius(c, ends[0], ends[1]);
     return g->forms ? room * sdv_form_ratio(sdv__form_of(g, (float)cone)) : room;
 }
 SDV_API float sdv_openness(const sdv_grid *grid, const sdv_shapes *shapes, lao_v3 p, lao_v3 normal,
