@@ -24,6 +24,9 @@
        ...
        sdv_layout_free(&layout); sdv_reduced_free(&reduced); sdv_tree_free(&tree);
 
+   FILES  lineao.h sdfvessel.h. To draw with sdv_module(): also a backend (see lineao.h) and
+   sdfvessel_shaders.h, beside lineao_shaders.h.
+
    CONFIGURATION (define before including)
        SDFVESSEL_IMPLEMENTATION   the function bodies, in one translation unit
        SDV_API                    linkage of the public functions (default: extern)
