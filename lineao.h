@@ -599,6 +599,7 @@ typedef struct lao_view {
 } lao_view; /* 0: none */
 
 #define LAO_BACKEND_ABI 3u
+#define LAO_SPARE_PROGRAMS 32u /* kept unused, so that a plan that comes back compiles nothing */
 struct lao_backend; /* the seam, below; the host only carries it from lao_*_backend to lao_create */
 
 /* A set of polylines. Points on a line that repeat bit for bit are merged; a line whose first and
@@ -1059,7 +1060,8 @@ typedef struct lao_backend {
     lao_result (*view_create)(void *self, void **view);
     void (*view_destroy)(void *self, void *view); /* frames under way keep it */
     /* Makes textures, framebuffers and programs for a plan; called again when the plan's serial
-       changed. After a failure the view is empty and may be prepared again. */
+       changed. Of programs that no view needs any more the last LAO_SPARE_PROGRAMS stay. After a
+       failure the view is empty and may be prepared again. */
     lao_result (*view_prepare)(void *self, void *view, const lao_plan *plan,
                                const lao_shader *const *shaders);
     lao_result (*execute)(void *self, void *view, const lao_execution *execution);

@@ -834,43 +834,60 @@ static void lao__gl_bind_names(const lao__gl *gl, const lao_shader *shader, lao_
     }
 }
 
-static void lao__gl_program_release(lao__gl *gl, lao__gl_program *program) {
+/* Deletes what no step uses, but for the `spare` last used: a plan that comes back, as when a
+ * setting is tried or the scene empties for a moment, finds its programs compiled. */
+static void lao__gl_programs_trim(lao__gl *gl, uint32_t spare) {
     lao__gl_program **link = &gl->programs;
-    if (!program || --program->users)
-        return;
-    while (*link != program)
-        link = &(*link)->next;
-    *link = program->next;
-    gl->DeleteProgram(program->name);
-    lao__gl_release(gl, program, sizeof *program);
+    while (*link) {
+        lao__gl_program *program = *link;
+        if (program->users || spare) {
+            spare -= program->users ? 0 : 1;
+            link = &program->next;
+        } else {
+            *link = program->next;
+            gl->DeleteProgram(program->name);
+            lao__gl_release(gl, program, sizeof *program);
+        }
+    }
 }
 
-/* The program of a shader with these constants: one that is there, or a new one. */
+static lao_result lao__gl_program_make(lao__gl *gl, const lao_shader *shader,
+                                       const int32_t *constants, lao__gl_program **made) {
+    lao__gl_program *program = (lao__gl_program *)lao__gl_allocate(gl, sizeof *program);
+    lao_result result;
+    if (!program)
+        return lao__gl_fail(gl->host, LAO_LOG_BACKEND_MEMORY, "program %s", shader->name);
+    program->shader = shader;
+    memcpy(program->constants, constants, shader->constant_count * sizeof *constants);
+    program->name = gl->CreateProgram();
+    result = lao__gl_link(gl, shader, constants, program->name);
+    if (result) {
+        gl->DeleteProgram(program->name);
+        lao__gl_release(gl, program, sizeof *program);
+        return result;
+    }
+    lao__gl_bind_names(gl, shader, program->name);
+    *made = program;
+    return LAO_OK;
+}
+
+/* The program of a shader with these constants, made or found; the last used stands first. */
 static lao_result lao__gl_program_get(lao__gl *gl, const lao_shader *shader,
                                       const int32_t *constants, lao__gl_program **found) {
     size_t size = shader->constant_count * sizeof *constants;
-    lao__gl_program *program = gl->programs;
-    lao_result result;
-    while (program &&
-           (program->shader != shader || memcmp(program->constants, constants, size) != 0))
-        program = program->next;
-    if (!program) {
-        program = (lao__gl_program *)lao__gl_allocate(gl, sizeof *program);
-        if (!program)
-            return lao__gl_fail(gl->host, LAO_LOG_BACKEND_MEMORY, "program %s", shader->name);
-        program->shader = shader;
-        memcpy(program->constants, constants, size);
-        program->next = gl->programs;
-        gl->programs = program;
-        program->name = gl->CreateProgram();
-        result = lao__gl_link(gl, shader, constants, program->name);
-        if (result) {
-            program->users = 1;
-            lao__gl_program_release(gl, program);
-            return result;
-        }
-        lao__gl_bind_names(gl, shader, program->name);
-    }
+    lao__gl_program **link = &gl->programs, *program;
+    lao_result result = LAO_OK;
+    while (*link && ((*link)->shader != shader || memcmp((*link)->constants, constants, size) != 0))
+        link = &(*link)->next;
+    program = *link;
+    if (program)
+        *link = program->next;
+    else
+        result = lao__gl_program_make(gl, shader, constants, &program);
+    if (result)
+        return result;
+    program->next = gl->programs;
+    gl->programs = program;
     program->users++;
     *found = program;
     return LAO_OK;
@@ -1033,6 +1050,7 @@ static void lao__gl_detach(void *self) {
         gl->DeleteBuffers(1, &gl->uniforms);
         gl->DeleteFramebuffers(1, &gl->reader);
         gl->DeleteSamplers(1, &gl->sampler);
+        lao__gl_programs_trim(gl, 0);
     }
     lao__gl_release(gl, gl->staging, gl->staging_size);
     lao__gl_release(gl, gl, gl->size);
@@ -1123,8 +1141,11 @@ static void lao__gl_view_free_images(const lao__gl *gl, lao__gl_view *view) {
 
 static void lao__gl_view_free_programs(lao__gl *gl, lao__gl_view *view) {
     uint32_t i;
-    for (i = 0; i < view->step_count; i++)
-        lao__gl_program_release(gl, view->steps[i].program);
+    for (i = 0; i < view->step_count; i++) {
+        if (view->steps[i].program)
+            view->steps[i].program->users--;
+    }
+    lao__gl_programs_trim(gl, LAO_SPARE_PROGRAMS);
     lao__gl_release(gl, view->steps, lao__gl_view_size(view));
     memset(view, 0, sizeof *view);
 }

@@ -138,7 +138,7 @@ typedef struct lao__vk_pipeline {
     lao__vk_object object; /* `next` chains all pipelines of the context */
     lao__vk_key key;
     VkPipeline pipeline;
-    uint32_t users; /* steps of builds; an unused pipeline goes once no frame needs it */
+    uint32_t users; /* steps of builds */
 } lao__vk_pipeline;
 
 /* Descriptor sets, and what they are made of. */
@@ -281,6 +281,24 @@ static void lao__vk_retire(lao__vk *vk, lao__vk_object *object) {
     }
 }
 
+/* Destroys what neither a step nor a frame in flight uses, but for the `spare` last used: a plan
+ * that comes back, as when a setting is tried, finds its pipelines compiled. With 0 nothing may be
+ * in use, and all go. */
+static void lao__vk_pipelines_trim(lao__vk *vk, uint32_t spare) {
+    lao__vk_object **link = &vk->pipelines;
+    int all = spare == 0;
+    while (*link) {
+        lao__vk_pipeline *pipeline = (lao__vk_pipeline *)*link;
+        if (all || (!pipeline->users && !spare && lao__vk_idle(vk, *link))) {
+            *link = pipeline->object.next;
+            pipeline->object.destroy(vk, &pipeline->object);
+        } else {
+            spare -= !pipeline->users && spare ? 1 : 0;
+            link = &pipeline->object.next;
+        }
+    }
+}
+
 static void lao__vk_collect(lao__vk *vk, int all) {
     lao__vk_object **link = &vk->retired;
     while (*link) {
@@ -292,16 +310,7 @@ static void lao__vk_collect(lao__vk *vk, int all) {
             link = &object->next;
         }
     }
-    link = &vk->pipelines;
-    while (*link) {
-        lao__vk_pipeline *pipeline = (lao__vk_pipeline *)*link;
-        if (all || (!pipeline->users && lao__vk_idle(vk, *link))) {
-            *link = pipeline->object.next;
-            pipeline->object.destroy(vk, &pipeline->object);
-        } else {
-            link = &pipeline->object.next;
-        }
-    }
+    lao__vk_pipelines_trim(vk, all ? 0 : LAO_SPARE_PROGRAMS);
 }
 
 /* ----------------------------------------------------------------------------- device resources */
@@ -968,30 +977,44 @@ static void lao__vk_pipeline_free(lao__vk *vk, lao__vk_object *object) {
     lao__vk_free(vk, pipeline, sizeof *pipeline);
 }
 
-/* Gives a step the pipeline of this key, made or found, in place of the one it has. */
+static lao_result lao__vk_pipeline_new(lao__vk *vk, const lao__vk_key *key, const char *name,
+                                       lao__vk_pipeline **made) {
+    lao__vk_pipeline *pipeline = (lao__vk_pipeline *)lao__vk_alloc(vk, sizeof *pipeline);
+    lao_result result;
+    if (!pipeline)
+        return LAO_ERROR_OUT_OF_MEMORY;
+    result = lao__vk_pipeline_make(vk, key, &pipeline->pipeline);
+    if (result) {
+        lao__vk_free(vk, pipeline, sizeof *pipeline);
+        return result;
+    }
+    pipeline->key = *key;
+    pipeline->object.destroy = lao__vk_pipeline_free;
+    lao__vk_name(vk, VK_OBJECT_TYPE_PIPELINE, &pipeline->pipeline, name);
+    *made = pipeline;
+    return LAO_OK;
+}
+
+/* Gives a step the pipeline of this key, made or found, in place of the one it has; the last used
+ * stands first. */
 static lao_result lao__vk_pipeline_use(lao__vk *vk, const lao__vk_key *key, const char *name,
                                        lao__vk_pipeline **used) {
-    lao__vk_pipeline *found = (lao__vk_pipeline *)vk->pipelines;
-    lao_result result;
+    lao__vk_object **link = &vk->pipelines;
+    lao__vk_pipeline *found;
+    lao_result result = LAO_OK;
     if (*used && memcmp(&(*used)->key, key, sizeof *key) == 0)
         return LAO_OK;
-    while (found && memcmp(&found->key, key, sizeof *key) != 0)
-        found = (lao__vk_pipeline *)found->object.next;
-    if (!found) {
-        found = (lao__vk_pipeline *)lao__vk_alloc(vk, sizeof *found);
-        if (!found)
-            return LAO_ERROR_OUT_OF_MEMORY;
-        result = lao__vk_pipeline_make(vk, key, &found->pipeline);
-        if (result) {
-            lao__vk_free(vk, found, sizeof *found);
-            return result;
-        }
-        found->key = *key;
-        found->object.destroy = lao__vk_pipeline_free;
-        found->object.next = vk->pipelines;
-        vk->pipelines = &found->object;
-        lao__vk_name(vk, VK_OBJECT_TYPE_PIPELINE, &found->pipeline, name);
-    }
+    while (*link && memcmp(&((lao__vk_pipeline *)*link)->key, key, sizeof *key) != 0)
+        link = &(*link)->next;
+    found = (lao__vk_pipeline *)*link;
+    if (found)
+        *link = found->object.next;
+    else
+        result = lao__vk_pipeline_new(vk, key, name, &found);
+    if (result)
+        return result;
+    found->object.next = vk->pipelines;
+    vk->pipelines = &found->object;
     if (*used)
         (*used)->users--;
     found->users++;

@@ -64,6 +64,7 @@ static void APIENTRY buffer_data(GLenum target, GLsizeiptr size, const void *dat
 
 static void APIENTRY link_program(GLuint program) {
     DRIVER(PFNGLLINKPROGRAMPROC, real, "glLinkProgram");
+    gl_wrap.linked++;
     if (fails(GL_OUT_OF_MEMORY))
         gl_wrap.error = GL_OUT_OF_MEMORY;
     real(program);

@@ -10,6 +10,7 @@ struct gl_wrap {
     int fail_call;    /* the n-th call that can fail does; 0: none */
     int procs, calls; /* counted since gl_wrap_reset */
     int failed;       /* what fail_call hit, a GL enum; 0: nothing */
+    int linked;       /* programs */
     int live;         /* names generated and not deleted */
     int lost;         /* glGetGraphicsResetStatus reports a reset */
     unsigned error;   /* pending */

@@ -281,6 +281,63 @@ static void a_refused_shader_is_named_with_the_compilers_text(void **state) {
     check_balance(&core);
 }
 
+static void a_plan_that_comes_back_links_nothing(void **state) {
+    lao_backend backend = make_backend();
+    lao_backend_caps caps;
+    gl_frame_core core;
+    gl_frame frame;
+    void *self = NULL, *view = NULL;
+    int linked;
+    (void)state;
+    gl_wrap_reset();
+    gl_frame_core_init(&core);
+    assert_int_equal(backend.attach(&backend, &core.host, &self, &caps), LAO_OK);
+    gl_frame_init(&frame, GL_FRAME_SIZE);
+    frame.plan.step_count--; /* without the target */
+    assert_int_equal(backend.view_create(self, &view), LAO_OK);
+    assert_int_equal(backend.view_prepare(self, view, &frame.plan, gl_frame_shaders), LAO_OK);
+    linked = gl_wrap.linked;
+    assert_true(linked > 1);
+    for (int i = 0; i < 2; i++) {
+        frame.plan.step_count -= 3;
+        assert_int_equal(backend.view_prepare(self, view, &frame.plan, gl_frame_shaders), LAO_OK);
+        frame.plan.step_count += 3;
+        assert_int_equal(backend.view_prepare(self, view, &frame.plan, gl_frame_shaders), LAO_OK);
+    }
+    assert_int_equal(gl_wrap.linked, linked);
+    backend.view_destroy(self, view);
+    backend.detach(self);
+    check_balance(&core);
+}
+
+/* Of programs that nothing uses so many stay, and no more. */
+static void programs_without_use_are_counted(void **state) {
+    lao_backend backend = make_backend();
+    lao_backend_caps caps;
+    gl_frame_core core;
+    gl_frame frame;
+    void *self = NULL, *view = NULL;
+    int empty;
+    (void)state;
+    gl_wrap_reset();
+    gl_frame_core_init(&core);
+    assert_int_equal(backend.attach(&backend, &core.host, &self, &caps), LAO_OK);
+    gl_frame_init(&frame, GL_FRAME_SIZE);
+    frame.plan.step_count = 2;
+    assert_int_equal(backend.view_create(self, &view), LAO_OK);
+    assert_int_equal(backend.view_prepare(self, view, &frame.plan, gl_frame_shaders), LAO_OK);
+    empty = gl_wrap.live;
+    for (int i = 1; i < 3 * (int)LAO_SPARE_PROGRAMS; i++) {
+        frame.steps[1].constants[0] = 100 + i; /* another program each time */
+        assert_int_equal(backend.view_prepare(self, view, &frame.plan, gl_frame_shaders), LAO_OK);
+        assert_int_equal(gl_wrap.live - empty,
+                         i < (int)LAO_SPARE_PROGRAMS ? i : (int)LAO_SPARE_PROGRAMS);
+    }
+    backend.view_destroy(self, view);
+    backend.detach(self);
+    check_balance(&core);
+}
+
 static void a_desc_that_lacks_something_is_refused(void **state) {
     lao_gl_desc desc = {0};
     lao_backend backend;
@@ -303,6 +360,8 @@ int main(void) {
         cmocka_unit_test(a_lost_device_is_reported_and_freed),
         cmocka_unit_test(real_lack_of_device_memory_leaves_an_empty_view),
         cmocka_unit_test(a_refused_shader_is_named_with_the_compilers_text),
+        cmocka_unit_test(a_plan_that_comes_back_links_nothing),
+        cmocka_unit_test(programs_without_use_are_counted),
         cmocka_unit_test(a_desc_that_lacks_something_is_refused),
     };
     int result;

@@ -1,6 +1,6 @@
 /* Whichever call of Vulkan fails, function is missing or allocation returns NULL: the public
  * function returns the matching error, logs exactly one item, leaks nothing, and works when it is
- * called again. */
+ * called again. And a plan that comes back makes no pipeline. */
 #include "vk_fixture.h"
 
 #include <stdio.h>
@@ -212,12 +212,37 @@ static void any_allocation_fails(void **state) {
     fixture_close(&l.f);
 }
 
+static void a_plan_that_comes_back_makes_no_pipeline(void **state) {
+    static const float halos[] = {LAO_HALO_NONE, LAO_HALO_UNIFORM, LAO_HALO_DEPTH};
+    static life l;
+    int made = 0;
+    (void)state;
+    fixture_open(&l.f, 0);
+    vk_wrap_reset();
+    assert_int_equal(make_context(&l), LAO_OK);
+    assert_int_equal(make_lines(&l), LAO_OK);
+    assert_int_equal(make_view(&l), LAO_OK);
+    l.settings.set |= LAO_SET(halo);
+    for (int i = 0; i < 6; i++) {
+        l.settings.halo = halos[i % 3];
+        assert_int_equal(draw(&l), LAO_OK);
+        fixture_wait(&l.f);
+        assert_true(i > 2 || vk_wrap.pipelines > made);
+        made = i < 3 ? vk_wrap.pipelines : made;
+    }
+    assert_int_equal(vk_wrap.pipelines, made);
+    lao_destroy(l.context);
+    assert_int_equal(l.f.bytes, 0);
+    fixture_close(&l.f);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(any_call_fails),
         cmocka_unit_test(any_call_fails_and_the_host_gives_up),
         cmocka_unit_test(any_function_is_missing),
         cmocka_unit_test(any_allocation_fails),
+        cmocka_unit_test(a_plan_that_comes_back_makes_no_pipeline),
     };
     return cmocka_run_group_tests_name("vk_faults", tests, NULL, NULL);
 }

@@ -11,6 +11,7 @@ void vk_wrap_reset(void) {
 
 /* Whether this call fails. Vulkan leaves a failed call's results undefined, so they are spoilt. */
 static int fails(const char *name, void *output, size_t size) {
+    vk_wrap.pipelines += strcmp(name, "vkCreateGraphicsPipelines") == 0;
     if (++vk_wrap.calls != vk_wrap.fail_call)
         return 0;
     vk_wrap.failed = name;

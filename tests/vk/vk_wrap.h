@@ -10,6 +10,7 @@ struct vk_wrap {
     VkResult result;    /* what it returns */
     int fail_proc;      /* the n-th name asked for is not found; 0: none */
     int calls, procs;   /* counted since vk_wrap_reset */
+    int pipelines;      /* made since then */
     const char *failed; /* the function that failed; NULL: none yet */
     char hidden[64];    /* the name that was not found */
 };
