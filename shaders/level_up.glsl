@@ -1,5 +1,9 @@
 /* One coarser level: averages of the covered texels below, weighted by how much of level 0 each covers (METHODS 1.10). */
+#ifdef LAO_LEVEL_ONE
+LAO_TEX(0, usampler2D, level)
+#else
 LAO_TEX(0, sampler2D, tensor)
+#endif
 LAO_TEX(1, sampler2D, level_tangent)
 LAO_CONSTANT(0, lao_constant_align)
 LAO_CONSTANT(1, lao_constant_pyramid)
@@ -22,7 +26,11 @@ void main() {
             if (at.x < 0 || at.y < 0 || at.x >= int(lao_step.source.x) || at.y >= int(lao_step.source.y)) {
                 continue;
             }
+#ifdef LAO_LEVEL_ONE
+            lao_v4 child = lao_level_child(LAO_TEXEL(level, float(at.x), float(at.y), inverse).x, lao_constant_align);
+#else
             lao_v4 child = LAO_TEXEL(tensor, float(at.x), float(at.y), inverse);
+#endif
             lao_v3 t = lao_v3_make(0.0, 0.0, 0.0);
             if (lao_constant_light == LAO_LIGHT_AUTHOR) {
                 t = lao_signed_unpack(texelFetch(level_tangent, at, 0));
