@@ -5754,12 +5754,8 @@ static const lao_texture_type lao_types_level_zero[] = {LAO_TEXTURE_2D, LAO_TEXT
 /* level_one */
 #ifdef LINEAO_SHADERS_GLSL
 static const char *const lao_lines_level_one[] = {
-    "#define LAO_LEVEL_ONE\n",
-    "#ifdef LAO_LEVEL_ONE\n",
     "LAO_TEX(0, usampler2D, level)\n",
-    "#else\n",
-    "LAO_TEX(0, sampler2D, tensor)\n",
-    "#endif\n",
+    "#define LAO_BELOW(column, row, inverse) lao_level_child(LAO_TEXEL(level, column, row, inverse).x, lao_constant_align)\n",
     "LAO_TEX(1, sampler2D, level_tangent)\n",
     "LAO_CONSTANT(0, lao_constant_align)\n",
     "LAO_CONSTANT(1, lao_constant_pyramid)\n",
@@ -5780,11 +5776,7 @@ static const char *const lao_lines_level_one[] = {
     "if (at.x < 0 || at.y < 0 || at.x >= int(lao_step.source.x) || at.y >= int(lao_step.source.y)) {\n",
     "continue;\n",
     "}\n",
-    "#ifdef LAO_LEVEL_ONE\n",
-    "lao_v4 child = lao_level_child(LAO_TEXEL(level, float(at.x), float(at.y), inverse).x, lao_constant_align);\n",
-    "#else\n",
-    "lao_v4 child = LAO_TEXEL(tensor, float(at.x), float(at.y), inverse);\n",
-    "#endif\n",
+    "lao_v4 child = LAO_BELOW(float(at.x), float(at.y), inverse);\n",
     "lao_v3 t = lao_v3_make(0.0, 0.0, 0.0);\n",
     "if (lao_constant_light == LAO_LIGHT_AUTHOR) {\n",
     "t = lao_signed_unpack(texelFetch(level_tangent, at, 0));\n",
@@ -6024,17 +6016,14 @@ z0,607,606,xL,wZ,z0,608,607,wq,609,0,wo,608,610,609,wb,
 };
 #endif
 static const char *const lao_constants_level_one[] = {"align", "pyramid", "light", };
-static const char *const lao_textures_level_one[] = {"level", "tensor", "level_tangent", };
-static const lao_texture_type lao_types_level_one[] = {LAO_TEXTURE_2D, LAO_TEXTURE_2D, LAO_TEXTURE_2D, };
+static const char *const lao_textures_level_one[] = {"level", "level_tangent", };
+static const lao_texture_type lao_types_level_one[] = {LAO_TEXTURE_2D, LAO_TEXTURE_2D, };
 
 /* level_up */
 #ifdef LINEAO_SHADERS_GLSL
 static const char *const lao_lines_level_up[] = {
-    "#ifdef LAO_LEVEL_ONE\n",
-    "LAO_TEX(0, usampler2D, level)\n",
-    "#else\n",
     "LAO_TEX(0, sampler2D, tensor)\n",
-    "#endif\n",
+    "#define LAO_BELOW(column, row, inverse) LAO_TEXEL(tensor, column, row, inverse)\n",
     "LAO_TEX(1, sampler2D, level_tangent)\n",
     "LAO_CONSTANT(0, lao_constant_align)\n",
     "LAO_CONSTANT(1, lao_constant_pyramid)\n",
@@ -6055,11 +6044,7 @@ static const char *const lao_lines_level_up[] = {
     "if (at.x < 0 || at.y < 0 || at.x >= int(lao_step.source.x) || at.y >= int(lao_step.source.y)) {\n",
     "continue;\n",
     "}\n",
-    "#ifdef LAO_LEVEL_ONE\n",
-    "lao_v4 child = lao_level_child(LAO_TEXEL(level, float(at.x), float(at.y), inverse).x, lao_constant_align);\n",
-    "#else\n",
-    "lao_v4 child = LAO_TEXEL(tensor, float(at.x), float(at.y), inverse);\n",
-    "#endif\n",
+    "lao_v4 child = LAO_BELOW(float(at.x), float(at.y), inverse);\n",
     "lao_v3 t = lao_v3_make(0.0, 0.0, 0.0);\n",
     "if (lao_constant_light == LAO_LIGHT_AUTHOR) {\n",
     "t = lao_signed_unpack(texelFetch(level_tangent, at, 0));\n",
@@ -6270,8 +6255,8 @@ x0,wb,529,wA,89,530,373,526,wk,x0,wb,x0,ww,89,531,526,
 };
 #endif
 static const char *const lao_constants_level_up[] = {"align", "pyramid", "light", };
-static const char *const lao_textures_level_up[] = {"level", "tensor", "level_tangent", };
-static const lao_texture_type lao_types_level_up[] = {LAO_TEXTURE_2D, LAO_TEXTURE_2D, LAO_TEXTURE_2D, };
+static const char *const lao_textures_level_up[] = {"tensor", "level_tangent", };
+static const lao_texture_type lao_types_level_up[] = {LAO_TEXTURE_2D, LAO_TEXTURE_2D, };
 
 /* occlusion */
 #ifdef LINEAO_SHADERS_GLSL
@@ -19619,11 +19604,11 @@ static const lao_shader lao_shaders[] = {
      {NULL, 0, NULL, 0},
      {LAO_GLSL_STAGE(lao_lines_level_zero) LAO_SPIRV_STAGE(lao_words_level_zero_fragment)},
      LAO_MODULE_PROLOGUE(lines)},
-    {"level_one", lao_constants_level_one, 3, lao_textures_level_one, lao_types_level_one, 3, 3,
+    {"level_one", lao_constants_level_one, 3, lao_textures_level_one, lao_types_level_one, 2, 3,
      {NULL, 0, NULL, 0},
      {LAO_GLSL_STAGE(lao_lines_level_one) LAO_SPIRV_STAGE(lao_words_level_one_fragment)},
      LAO_MODULE_PROLOGUE(lines)},
-    {"level_up", lao_constants_level_up, 3, lao_textures_level_up, lao_types_level_up, 3, 3,
+    {"level_up", lao_constants_level_up, 3, lao_textures_level_up, lao_types_level_up, 2, 3,
      {NULL, 0, NULL, 0},
      {LAO_GLSL_STAGE(lao_lines_level_up) LAO_SPIRV_STAGE(lao_words_level_up_fragment)},
      LAO_MODULE_PROLOGUE(lines)},
