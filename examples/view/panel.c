@@ -275,8 +275,18 @@ static void picture_tab(view *v) {
 
 /* ---- all of it --------------------------------------------------------------------------- */
 
-/* What was clicked: words below, a mark in the picture. */
+static void copy_json(const view *v) {
+    char *json = pick_json(v->doc->scene, &v->picked);
+    if (json) {
+        ui_copy(json);
+        trace(v, "json %s", json);
+    }
+    free(json);
+}
+
+/* What was clicked, and what can be done with it. */
 static void picked_text(view *v, window_rect place) {
+    char text[160];
     float height = 9 * ui_text_height();
     if (v->picked.kind == PICKED_NOTHING)
         return;
@@ -298,9 +308,17 @@ static void picked_text(view *v, window_rect place) {
         v->hands.pathing = false;
         stage_select(v);
     }
+    ui_same_line();
+    if (ui_small_button("Copy JSON"))
+        copy_json(v);
+    ui_help("what is told below, for a program");
     hands_buttons(v);
     ui_disable_end();
-    ui_text_wrapped(v->picked.text);
+    ui_text_wrapped(v->picked.title);
+    for (uint32_t i = 0; i < v->picked.fact_count; i++) {
+        pick_print(&v->picked.facts[i], text, sizeof text);
+        ui_text(text);
+    }
     ui_panel_end();
 }
 

@@ -367,6 +367,20 @@ static void undoes(desktop *d, const char *before) {
     assert_string_equal(command, before);
 }
 
+/* What was clicked, with its distance from the target that is there since. */
+static void tells_of_the_target(desktop *d) {
+    double radius = 0, distance = 1;
+    user_clicks(d, "Copy JSON");
+    assert_int_equal(
+        sscanf(viewer_hears(d, "json "),
+               "{\"kind\":\"tree\",\"of\":\"aim.swc\",\"segment\":0,\"node\":1,\"facts\":"
+               "{\"radius\":%lf,\"from the target\":%lf,",
+               &radius, &distance),
+        2);
+    assert_true(fabs(radius - 3) < 1e-6);
+    assert_true(distance < 0); /* the ball is on the vessel */
+}
+
 /* A picture; a branch in both views, and a target on one; and back. */
 static void places_on_trees(void **state) {
     fixture *f = *state;
@@ -381,6 +395,7 @@ static void places_on_trees(void **state) {
     assert_int_equal(viewer_hears(d, "picked ")[0], '2');
     user_clicks(d, "Target here");
     assert_placed(d, " --target ", true);
+    tells_of_the_target(d);
     undoes(d, before);
     quit(f);
 }
