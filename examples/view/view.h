@@ -229,6 +229,11 @@ void player_panel(view *v, window_rect place);
 
 /* The user interface of a frame; says where the picture goes. */
 void panel_draw(view *v);
+/* Its tabs; the list of keys. */
+void panel_scene(view *v);
+void panel_view(view *v);
+void panel_save(view *v);
+void panel_keys(void);
 void panel_settings(view *v);
 /* The widget of a setting, and its help. */
 bool panel_edit(const lao_setting_row *row, float *value);
