@@ -81,7 +81,7 @@ static void tell(const picked *p) {
 void marks_draw(const view *v) {
     if (!v->open || v->picture.width < 1 || v->picture.height < 1)
         return;
-    ui_clip(v->picture);
+    ui_clip(true, v->picture);
     if (v->picked.kind != PICKED_NOTHING) {
         mark_branch(v, &v->picked, chosen_color);
         mark_place(v, &v->picked, chosen_color);
@@ -90,7 +90,7 @@ void marks_draw(const view *v) {
     if (v->hovered.kind == PICKED_LINE)
         mark_line(v, &v->hovered, hovered_color);
     hands_marks(v);
-    ui_clip_end();
+    ui_clip_end(true);
     if (v->hovered.kind != PICKED_NOTHING && !v->hovered_flat && v->pointer.button < 0)
         tell(&v->hovered);
 }

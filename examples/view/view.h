@@ -48,6 +48,12 @@ typedef struct hands {
     bool stale;                      /* a slider has been moved, and not yet let go */
 } hands;
 
+/* Which part of the flat tree is shown. */
+typedef struct flat_view {
+    float zoom;      /* 1, or 0 at first: all of it */
+    float left, top; /* in parts of the whole */
+} flat_view;
+
 /* A video that is being made. */
 typedef struct film {
     char path[PATH_SIZE];
@@ -107,6 +113,7 @@ typedef struct view {
     pointer pointer;
     picked picked, hovered;
     bool hovered_flat; /* in the 2D view */
+    flat_view flat;
     hands hands;
     film film;
     lao_lines picked_lines; /* the selected line once more, on top */
