@@ -39,6 +39,10 @@ typedef struct cli_wall {
     colour_map map;       /* of --wall-colormap */
 } cli_wall;
 
+/* Do the options give lines: of a file, or of an embedded surface that has a flow? Volumes have
+ * their own. */
+bool cli_wall_has_lines(const cli_options *options);
+
 /* Reads or makes mesh and lines and all numbers that do not depend on the camera. place: (Optional)
  * among others in a scene. False: reported; free it in any case. */
 bool cli_wall_load(const cli_options *options, const cli_place *place, cli_wall *out);
@@ -68,6 +72,8 @@ void cli_wall_eye(const cli_shot *shot, float eye[4]);
 uint32_t cli_wall_scales(cli_wall *wall, colour_map maps[2], char titles[2][160], legend out[2]);
 /* A cli_picture_edit of a cli_wall: draws the legends that --legend asks for. */
 bool cli_wall_legends(void *user, picture *p);
+/* Warns where pictures of the shot's size have no room for all of them. False: reported. */
+bool cli_wall_legends_check(cli_wall *wall, const cli_shot *shot);
 /* The warning i of all about the mesh; false: there are fewer. */
 bool cli_wall_warning(const cli_wall *wall, uint32_t i, char *text, size_t size);
 /* A cli_planes_edit of a cli_wall: positions become absolute. */
