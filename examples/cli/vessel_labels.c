@@ -80,7 +80,8 @@ bool cli_label_place(cli_label *labels, uint32_t count, uint32_t index, const ui
     double least = INFINITY, best[2] = {0, 0};
     own->placed = false;
     for (int i = 0; i < 1 + RINGS * ROUND; i++) {
-        double ring = i ? (double)((i - 1) / ROUND + 1) : 0;
+        int rings = i ? (i - 1) / ROUND + 1 : 0;
+        double ring = rings;
         double angle = (i + 0.5 * ring) * 6.283185307179586 / ROUND;
         own->at[0] = own->anchor[0] + 0.9 * ring * (own->half[0] + own->half[1]) * cos(angle);
         own->at[1] = own->anchor[1] + 1.5 * ring * own->half[1] * sin(angle);
@@ -102,10 +103,14 @@ bool cli_label_place(cli_label *labels, uint32_t count, uint32_t index, const ui
 /* A line with round ends, `half` px to each side. */
 static void draw_line(picture *p, const double a[2], const double b[2], double half,
                       const double rgb[3]) {
-    for (double y = floor(fmin(a[1], b[1]) - half); y <= fmax(a[1], b[1]) + half + 1; y++) {
-        for (double x = floor(fmin(a[0], b[0]) - half); x <= fmax(a[0], b[0]) + half + 1; x++) {
-            double off = line_distance(a, b, x + 0.5, y + 0.5);
-            picture_blend(p, (int64_t)x, (int64_t)y, rgb, fmin(fmax(half + 0.5 - off, 0), 1));
+    int64_t x0 = (int64_t)floor(fmin(a[0], b[0]) - half), x1, y0, y1;
+    x1 = (int64_t)ceil(fmax(a[0], b[0]) + half);
+    y0 = (int64_t)floor(fmin(a[1], b[1]) - half);
+    y1 = (int64_t)ceil(fmax(a[1], b[1]) + half);
+    for (int64_t y = y0; y <= y1; y++) {
+        for (int64_t x = x0; x <= x1; x++) {
+            double off = line_distance(a, b, (double)x + 0.5, (double)y + 0.5);
+            picture_blend(p, x, y, rgb, fmin(fmax(half + 0.5 - off, 0), 1));
         }
     }
 }
