@@ -3913,6 +3913,7 @@ static const lao_texture_type lao_types_level_zero[] = {LAO_TEXTURE_2D, LAO_TEXT
 #ifdef LINEAO_SHADERS_GLSL
 static const char *const lao_lines_level_one[] = {
     "LAO_TEX(0, usampler2D, level)\n",
+    "#define LAO_BELOW(column, row, inverse) lao_level_child(LAO_TEXEL(level, column, row, inverse).x, lao_constant_align)\n",
     "LAO_TEX(1, sampler2D, level_tangent)\n",
     "LAO_CONSTANT(0, lao_constant_align)\n",
     "LAO_CONSTANT(1, lao_constant_pyramid)\n",
@@ -3933,7 +3934,7 @@ static const char *const lao_lines_level_one[] = {
     "if (at.x < 0 || at.y < 0 || at.x >= int(lao_step.source.x) || at.y >= int(lao_step.source.y)) {\n",
     "continue;\n",
     "}\n",
-    "lao_v4 child = lao_level_child(LAO_TEXEL(level, float(at.x), float(at.y), inverse).x, lao_constant_align);\n",
+    "lao_v4 child = LAO_BELOW(float(at.x), float(at.y), inverse);\n",
     "lao_v3 t = lao_v3_make(0.0, 0.0, 0.0);\n",
     "if (lao_constant_light == LAO_LIGHT_AUTHOR) {\n",
     "t = lao_signed_unpack(texelFetch(level_tangent, at, 0));\n",
@@ -4180,6 +4181,7 @@ static const lao_texture_type lao_types_level_one[] = {LAO_TEXTURE_2D, LAO_TEXTU
 #ifdef LINEAO_SHADERS_GLSL
 static const char *const lao_lines_level_up[] = {
     "LAO_TEX(0, sampler2D, tensor)\n",
+    "#define LAO_BELOW(column, row, inverse) LAO_TEXEL(tensor, column, row, inverse)\n",
     "LAO_TEX(1, sampler2D, level_tangent)\n",
     "LAO_CONSTANT(0, lao_constant_align)\n",
     "LAO_CONSTANT(1, lao_constant_pyramid)\n",
@@ -4200,7 +4202,7 @@ static const char *const lao_lines_level_up[] = {
     "if (at.x < 0 || at.y < 0 || at.x >= int(lao_step.source.x) || at.y >= int(lao_step.source.y)) {\n",
     "continue;\n",
     "}\n",
-    "lao_v4 child = LAO_TEXEL(tensor, float(at.x), float(at.y), inverse);\n",
+    "lao_v4 child = LAO_BELOW(float(at.x), float(at.y), inverse);\n",
     "lao_v3 t = lao_v3_make(0.0, 0.0, 0.0);\n",
     "if (lao_constant_light == LAO_LIGHT_AUTHOR) {\n",
     "t = lao_signed_unpack(texelFetch(level_tangent, at, 0));\n",

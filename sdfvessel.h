@@ -5313,24 +5313,27 @@ SDV_API lao_result sdv_grid_update(const sdv_host *host, const sdv_tree *tree,
 }
 
 /* ---- reading */
-static sdv_near sdv__near_form(const sdv_grid *g, sdv_near n, lao_v3 p, lao_v3 direction,
-                               float cone) {
-    const lao_v4 *c = g->cones + 2 * (size_t)cone;
-    lao_v2 along = sdv_cone_along(p, direction, c[0], c[1]);
-    return sdv_near_asks(n, along)
-               ? sdv_near_form(n, along, p, c[0], c[1], sdv__form_of(g, cone), cone)
-               : n;
-}
-/* Of p to the forms of a cell's list; a bound. */
-static float sdv__form_distance(const sdv_grid *g, const lao_v4 *cell, lao_v3 p, uint32_t *cone) {
-    sdv_near n = sdv_near_start(0.0f);
+/* Adds the forms of a cell's list to a sample. */
+static sdv_near sdv__near_forms(const sdv_grid *g, const lao_v4 *cell, lao_v3 p, lao_v3 direction,
+                                sdv_near n) {
     uint32_t i;
+    for (i = 0; i < (uint32_t)cell->w; i++) {
+        float id = g->ids[(size_t)cell->z + i];
+        const lao_v4 *c = g->cones + 2 * (size_t)id;
+        lao_v2 along = sdv_cone_along(p, direction, c[0], c[1]);
+        if (sdv_near_asks(n, along)) {
+            n = sdv_near_form(n, along, p, c[0], c[1], sdv__form_of(g, id), id);
+        }
+    }
+    return n;
+}
+/* Of p to what a cell lists; of forms a bound. */
+static float sdv__form_distance(const sdv_grid *g, const lao_v4 *cell, lao_v3 p, uint32_t *cone) {
+    sdv_near n;
     if (!g->forms) {
         return sdv__list_distance(g, cell, p, cone);
     }
-    for (i = 0; i < (uint32_t)cell->w; i++) {
-        n = sdv__near_form(g, n, p, lao_v3_make(0.0f, 0.0f, 1.0f), g->ids[(size_t)cell->z + i]);
-    }
+    n = sdv__near_forms(g, cell, p, lao_v3_make(0.0f, 0.0f, 1.0f), sdv_near_start(0.0f));
     if (n.cone >= 0.0f) {
         *cone = (uint32_t)n.cone;
     }
@@ -5371,11 +5374,13 @@ static sdv_near sdv__near_at(const sdv_grid *g, const lao_v4 *cell, lao_v3 p, la
     sdv_near n = sdv_near_start(sdv_near_reach(g->cell));
     const lao_v4 *from = cell->w > 0.0f ? cell : g->cells + (size_t)cell->y;
     uint32_t i;
+    if (g->forms) {
+        return sdv__near_forms(g, from, p, direction, n);
+    }
     for (i = 0; i < (uint32_t)from->w; i++) {
         float id = g->ids[(size_t)from->z + i];
         const lao_v4 *cone = g->cones + 2 * (size_t)id;
-        n = g->forms ? sdv__near_form(g, n, p, direction, id)
-                     : sdv_near_add(n, p, direction, cone[0], cone[1], id);
+        n = sdv_near_add(n, p, direction, cone[0], cone[1], id);
     }
     return n;
 }
@@ -5387,15 +5392,16 @@ static sdv_minimum sdv__minimum_add(const sdv_grid *g, const sdv_ray *ray, sdv_m
                                   sdv__form_of(g, found.cone), low, high)
                : sdv_minimum_add(found, ray->origin, ray->direction, ends[0], ends[1], low, high);
 }
-/* Outward normal of a cone (xyz) and its distance (w), of a form as far as that can be told. */
-static lao_v4 sdv__estimate(const sdv_grid *g, uint32_t cone, lao_v3 p) {
+/* Outward normal of a cone (xyz) and its distance (w), of a form as far as that can be told. round:
+   that of the round cone. */
+static lao_v4 sdv__estimate(const sdv_grid *g, uint32_t cone, lao_v3 p, float round) {
     const lao_v4 *ends = g->cones + 2 * (size_t)cone;
     lao_v3 n;
     if (g->forms) {
         return sdv_form_estimate(p, ends[0], ends[1], sdv__form_of(g, (float)cone));
     }
     n = sdv_round_cone_gradient(p, ends[0], ends[1]);
-    return lao_v4_make(n.x, n.y, n.z, sdv_round_cone(p, ends[0], ends[1]));
+    return lao_v4_make(n.x, n.y, n.z, round);
 }
 static const lao_v4 *sdv__cell_at(const sdv_grid *g, lao_v3 p) {
     return g->cells + sdv_cell_at(sdv__grid_box(g), p);
@@ -5453,7 +5459,7 @@ static void sdv__land(const sdv_grid *g, const sdv_ray *ray, const sdv_march *m,
             break;
         }
         off = lao_abs(n.distance);
-        there = sdv__estimate(g, (uint32_t)n.cone, p);
+        there = sdv__estimate(g, (uint32_t)n.cone, p, n.distance);
         gradient = lao_v3_make(there.x, there.y, there.z);
         hit->position = p;
         hit->cone = (uint32_t)n.cone;
@@ -5559,7 +5565,7 @@ static lao_v3 sdv__solid_gradient(const sdv_grid *g, const sdv_shapes *shapes, c
     if (s->part >= 0) {
         return lao_v3_scale(sdv__shape_gradient(shapes, s->part, p), s->side);
     }
-    there = sdv__estimate(g, cone, p);
+    there = sdv__estimate(g, cone, p, s->distance);
     return lao_v3_make(there.x, there.y, there.z);
 }
 static void sdv__solid_land(const sdv_grid *g, const sdv_shapes *shapes, const sdv_ray *ray,
@@ -5691,7 +5697,7 @@ SDV_API lao_v3 sdv_smooth_normal(const sdv_grid *grid, lao_v3 p, uint32_t cone, 
                                  float smoothness) {
     const lao_v4 *cell = sdv__cell_at(grid, p), *own = grid->cones + 2 * (size_t)cone;
     lao_v2 reach = sdv_joint_reach(p, own[0], own[1], smoothness, grid->cell);
-    lao_v4 at = sdv__estimate(grid, cone, p);
+    lao_v4 at = sdv__estimate(grid, cone, p, 0.0f);
     lao_v3 sum = sdv_joint_start(lao_v3_make(at.x, at.y, at.z), own[0], own[1], reach);
     uint32_t i;
     if (!(reach.x > 0.0f)) {
@@ -5700,10 +5706,11 @@ SDV_API lao_v3 sdv_smooth_normal(const sdv_grid *grid, lao_v3 p, uint32_t cone, 
     for (i = 0; i < (uint32_t)cell->w; i++) {
         uint32_t other = (uint32_t)grid->ids[(size_t)cell->z + i];
         const lao_v4 *ends = grid->cones + 2 * (size_t)other;
-        if (!grid->forms && !(sdv_round_cone(p, ends[0], ends[1]) < reach.x)) {
+        float round = grid->forms ? 0.0f : sdv_round_cone(p, ends[0], ends[1]);
+        if (!(round < reach.x)) {
             continue;
         }
-        at = sdv__estimate(grid, other, p);
+        at = sdv__estimate(grid, other, p, round);
         if (at.w < reach.x) {
             sum = sdv_joint_add(sum, at.w, lao_v3_make(at.x, at.y, at.z), ends[0], ends[1], reach);
         }
@@ -5731,7 +5738,7 @@ SDV_API float sdv_openness(const sdv_grid *grid, const sdv_shapes *shapes, lao_v
         lao_v3 q = lao_v3_along(p, normal, place);
         uint32_t cone = 0;
         float d = sdv_grid_distance(grid, q, &cone);
-        d = grid->forms ? sdv__estimate(grid, cone, q).w : d;
+        d = grid->forms ? sdv__estimate(grid, cone, q, d).w : d;
         d = shapes ? sdv__solid_of(shapes, d, q, false).distance : d;
         closed = sdv_open_add(closed, inside ? -d : d, place, i);
     }

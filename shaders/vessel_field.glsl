@@ -21,15 +21,16 @@ sdv_form form_at(float cone) {
     form.bump = texelFetch(cones, at + 2);
     return form;
 }
-/* Outward normal of a cone (xyz) and its distance (w), of a form as far as that can be told. */
-vec4 estimate_at(lao_v3 p, float cone) {
+/* Outward normal of a cone (xyz) and its distance (w), of a form as far as that can be told. round: that of the round
+   cone. */
+vec4 estimate_at(lao_v3 p, float cone, float round) {
     int at = 2 * int(cone);
     vec4 a = texelFetch(cones, at);
     vec4 b = texelFetch(cones, at + 1);
     if (lao_constant_has_vessel_forms != 0) {
         return sdv_form_estimate(p, a, b, form_at(cone));
     }
-    return vec4(sdv_round_cone_gradient(p, a, b), sdv_round_cone(p, a, b));
+    return vec4(sdv_round_cone_gradient(p, a, b), round);
 }
 /* One sample: from the list of the cell at p, or of the nearest cell that has one. */
 sdv_near near_in(sdv_box b, vec4 cell, lao_v3 p, lao_v3 direction) {

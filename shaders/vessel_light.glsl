@@ -12,7 +12,7 @@ float field_at(sdv_box b, lao_v3 p) {
     sdv_near near = near_at(b, p, lao_v3_make(0.0, 0.0, 1.0));
     float d = near.distance;
     if (lao_constant_has_vessel_forms != 0) {
-        d = estimate_at(p, near.cone).w;
+        d = estimate_at(p, near.cone, d).w;
     }
     return combined(d, p, false);
 }
@@ -54,14 +54,15 @@ lao_v3 smooth_normal(sdv_box b, lao_v3 p, float cone, lao_v3 n) {
     if (!(reach.x > 0.0)) {
         return n;
     }
-    lao_v3 sum = sdv_joint_start(estimate_at(p, cone).xyz, texelFetch(cones, own), texelFetch(cones, own + 1), reach);
+    lao_v3 sum = sdv_joint_start(estimate_at(p, cone, 0.0).xyz, texelFetch(cones, own), texelFetch(cones, own + 1), reach);
     for (int i = 0; i < count; i++) {
         float id = id_fetch(int(cell.z) + i);
         int at = 2 * int(id);
         vec4 a = texelFetch(cones, at);
         vec4 b = texelFetch(cones, at + 1);
-        if (lao_constant_has_vessel_forms != 0 || sdv_round_cone(p, a, b) < reach.x) {
-            vec4 there = estimate_at(p, id);
+        float round = lao_constant_has_vessel_forms != 0 ? 0.0 : sdv_round_cone(p, a, b);
+        if (round < reach.x) {
+            vec4 there = estimate_at(p, id, round);
             if (there.w < reach.x) {
                 sum = sdv_joint_add(sum, there.w, there.xyz, a, b, reach);
             }

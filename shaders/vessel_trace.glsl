@@ -77,12 +77,12 @@ void land(sdv_box b, lao_v3 origin, lao_v3 direction, sdv_march m) {
             break;
         }
         off = lao_abs(n.distance);
-        vec4 there = estimate_at(p, n.cone);
+        vec4 there = estimate_at(p, n.cone, n.distance);
         lao_v3 gradient = there.xyz;
         out_position = vec4(p, n.cone);
         out_normal.xyz = m.inside > 0.5 ? lao_v3_scale(gradient, -1.0) : gradient;
         out_ray.x = t;
-        t = sdv_polish(t, lao_constant_has_vessel_forms != 0 ? there.w : n.distance, gradient, direction, b.cell);
+        t = sdv_polish(t, there.w, gradient, direction, b.cell);
     }
 }
 
