@@ -65,6 +65,7 @@ static void add_lines(bench_floors *floors) {
     }
     row->name = "floor_lines";
     row->shader = "floor_lines";
+    row->kind = LAO_PASS_DRAW_LINES;        /* all of them, not the first part */
     memset(row->when, 0, sizeof row->when); /* beside whichever row draws the lines */
     memset(row->writes, 0, sizeof row->writes);
     row->writes[0] = reference("floor_color", LAO_LOAD_CLEAR);

@@ -81,15 +81,15 @@ lao_v2 neighbour_of(segment_part s, segment_end end, bool at_end, lao_v3 corner)
                              at_end ? 1.0 : -1.0, join.square);
 }
 
-/* Does all of the segment lie behind what was drawn before? All of it is within 3/4 of the width from the line between its ends
+/* Does all of the segment lie behind what was drawn before? All of it is within 0.71 of the width from the line between its ends
    (a corner is at most sqrt(2) half widths from its end); a halo lies farther back than its line. The line is cut where the box
    around a piece may outgrow 4 x 4 tiles less one. Depth is linear along it on the screen; in front of it, nearer than that. The
    same for all four corners. */
 bool hidden(lao_v3 p1, lao_v3 p2) {
-    float r = 0.75 * lao_setting_width;
+    float r = 0.71 * lao_setting_width;
     float nearest = max(p1.z, p2.z);
     vec2 slope = max(abs(p1.xy / p1.z), abs(p2.xy / p2.z)) * nearest;
-    vec2 size = lao_ball_size(lao_v3_make(slope.x, slope.y, nearest), r, lao_frame.scale, lao_frame.depth.w) + 1.0;
+    vec2 size = lao_ball_size(lao_v3_make(slope.x, slope.y, nearest), r, lao_frame.scale, lao_frame.depth.w) + 0.5;
     vec4 c1 = lao_project(lao_frame.projection, p1);
     vec4 c2 = lao_project(lao_frame.projection, p2);
     vec4 front1 = lao_project(lao_frame.projection, lao_v3_make(0.0, 0.0, p1.z + r));
@@ -100,7 +100,7 @@ bool hidden(lao_v3 p1, lao_v3 p2) {
     float deeper = front2.z / front2.w - depth;
     vec2 pieces = ceil(abs(way) / (12.0 - 2.0 * size));
     float count = max(max(pieces.x, pieces.y), 1.0);
-    bool behind = min(size.x, size.y) >= 1.0 && max(size.x, size.y) < 6.0 && count <= 8.0;
+    bool behind = min(size.x, size.y) >= 0.5 && max(size.x, size.y) < 6.0 && count <= 8.0;
     for (float i = 0.0; behind && i < count; i += 1.0) {
         float t1 = i / count;
         float t2 = (i + 1.0) / count;
