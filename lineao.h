@@ -34,7 +34,8 @@
    print, abort, keep global state or link to a GL or Vulkan library.
 
    FILES  OpenGL host: lineao.h lineao_shaders.h lineao_gl.c. Vulkan host: lineao.h lineao_shaders.h
-   lineao_vk.c.
+   lineao_vk.c. A further module (sdfvessel.h, vesselsurface.h) brings its shaders in a file of its
+   own (sdfvessel_shaders.h, ...), which lineao_shaders.h takes when it lies beside.
 
    CONFIGURATION (define before including)
        LINEAO_IMPLEMENTATION   the function bodies, in one translation unit
@@ -394,7 +395,7 @@ typedef struct lao_module {
     uint32_t setting_count;
     const lao_preset_row *presets;
     uint32_t preset_count;
-    const lao_shader *shaders; /* NULL: those of lineao_shaders.h */
+    const lao_shader *shaders; /* NULL: those of lineao_shaders.h and of what it takes */
     uint32_t shader_count;
     const lao_buffer_row *buffers;
     uint32_t buffer_count;
@@ -963,9 +964,14 @@ typedef struct lao_backend_caps {
     uint32_t max_image_size;    /* px */
     uint32_t max_texture_units; /* textures one stage can read */
     uint32_t max_buffer_texels; /* longest texel buffer */
-    const lao_shader *shaders;  /* lineao_shaders.h */
+    const lao_shader *shaders;  /* lineao_shaders.h and what it takes */
     uint32_t shader_count;
 } lao_backend_caps;
+
+/* What a backend says, with the name, of a shader that is not there. */
+#define LAO_NO_SHADER                                                                              \
+    "%s: there is no such shader; a module's file of shaders (sdfvessel_shaders.h, ...) must lie " \
+    "beside lineao_shaders.h"
 
 /* What the core lends to its backend from attach to detach. */
 typedef struct lao_host {

@@ -24,6 +24,9 @@
        ...
        sdv_layout_free(&layout); sdv_reduced_free(&reduced); sdv_tree_free(&tree);
 
+   FILES  lineao.h sdfvessel.h. To draw with sdv_module(): also a backend (see lineao.h) and
+   sdfvessel_shaders.h, beside lineao_shaders.h.
+
    CONFIGURATION (define before including)
        SDFVESSEL_IMPLEMENTATION   the function bodies, in one translation unit
        SDV_API                    linkage of the public functions (default: extern)
@@ -760,7 +763,7 @@ LAO_FN sdv_cone_point sdv_cone_point_make(lao_v3 p, lao_v4 a, lao_v4 b) {
     return c;
 }
 /* Radius of the ball that is nearest to the point. */
-LAO_FN float sdv_cone_radius(sdv_cone_point c, lao_v4 a, lao_v4 b) {
+LAO_FN float sdv_cone_ball_radius(sdv_cone_point c, lao_v4 a, lao_v4 b) {
     LAO_EXACT float radius = a.w + c.place * (b.w - a.w);
     return radius;
 }
@@ -1901,6 +1904,11 @@ LAO_FN lao_v3 sdv_cone_color(lao_v3 p, lao_v4 a, lao_v4 b, lao_v3 color_a, lao_v
     LAO_EXACT float z = color_a.z + t * (color_b.z - color_a.z);
     return lao_v3_make(x, y, z);
 }
+/* Radius of the cone at the place, mm. */
+LAO_FN float sdv_cone_radius(lao_v3 p, lao_v4 a, lao_v4 b) {
+    LAO_EXACT float r = a.w + sdv_cone_place(p, a, b) * (b.w - a.w);
+    return r;
+}
 /* Is the place marked? alpha_a, alpha_b: of the colours of the cone's ends. */
 LAO_FN bool sdv_is_marked(lao_v3 p, lao_v4 a, lao_v4 b, float alpha_a, float alpha_b) {
     LAO_EXACT float alpha = alpha_a + sdv_cone_place(p, a, b) * (alpha_b - alpha_a);
@@ -1909,8 +1917,7 @@ LAO_FN bool sdv_is_marked(lao_v3 p, lao_v4 a, lao_v4 b, float alpha_a, float alp
 /* How near to a place of the surface another cone takes part in its shading normal (x, mm: within
    what the cell's list is sure to hold), and the radius there (y). a, b: of the cone at p. */
 LAO_FN lao_v2 sdv_joint_reach(lao_v3 p, lao_v4 a, lao_v4 b, float smoothness, float cell) {
-    sdv_cone_point c = sdv_cone_point_make(p, a, b);
-    LAO_EXACT float radius = a.w + c.place * (b.w - a.w);
+    float radius = sdv_cone_radius(p, a, b);
     LAO_EXACT float reach = smoothness * radius;
     return lao_v2_make(lao_min(reach, sdv_near_reach(cell)), radius);
 }
@@ -2353,8 +2360,42 @@ LAO_FN float sdv_lines_ink(float x, float dark, float wide) {
         (sdv_lines_until(x + 0.5f * w, dark) - sdv_lines_until(x - 0.5f * w, dark)) / w;
     return lao_clamp01(r);
 }
-/* A disc in the middle of the period's cell; its soft edge and what is too small for a pixel keep
-   their area. dark <= pi / 4. */
+/* On thin vessels strokes and dots are finer: as many times as a period is longer than the vessel
+   is wide, or than so many pixels. 1: as they are. radius, period, pixel: mm. */
+#define SDV_INK_LEAST_PIXELS 5.0f
+LAO_FN float sdv_ink_finer(float radius, float period, float pixel) {
+    LAO_EXACT float room = lao_max(1.5f * radius, SDV_INK_LEAST_PIXELS * pixel);
+    LAO_EXACT float r = lao_min(lao_max(period / room, 1.0f), 32.0f);
+    return r;
+}
+/* How many cells of the finest lattice that is whole lie along a period (x: 1, 2, 4, ...), and how
+   far strokes and dots between its own have grown (y, 0 .. 1). */
+LAO_FN lao_v2 sdv_ink_lattice(float finer) {
+    float cells = 1.0f;
+    for (lao_int i = 0; i < 5; i++) {
+        cells = finer >= 2.0f * cells ? 2.0f * cells : cells;
+    }
+    LAO_EXACT float grown = finer / cells - 1.0f;
+    return lao_v2_make(cells, lao_max(grown, 0.0f));
+}
+/* How far from the middle of its cell a place is, 0 .. 1/2, where cells are `times` as fine. */
+LAO_FN float sdv_finer_cell(float a, float times) {
+    LAO_EXACT float x = lao_abs(a) * times;
+    LAO_EXACT float r = lao_abs(x - lao_floor(x + 0.5f));
+    return r;
+}
+/* Lines and, between them, those that grow while they thin: the mean stays `dark`. x: 0 .. 1/2. */
+LAO_FN float sdv_growing_lines(float x, float dark, float wide, float grown) {
+    LAO_EXACT float between = 0.5f * grown * dark;
+    float ink = sdv_lines_ink(x, dark - between, wide);
+    if (grown > 0.0f) {
+        LAO_EXACT float both = ink + sdv_lines_ink(0.5f - x, between, wide);
+        ink = lao_clamp01(both);
+    }
+    return ink;
+}
+/* A disc in the middle of a cell; its soft edge and what is smaller than a pixel keep their area.
+   dark <= pi / 4. */
 LAO_FN float sdv_dot_ink(float a, float b, float dark, float wide_a, float wide_b) {
     LAO_EXACT float r = lao_sqrt(a * a + b * b);
     LAO_EXACT float wa = a * wide_a;
@@ -2366,41 +2407,57 @@ LAO_FN float sdv_dot_ink(float a, float b, float dark, float wide_a, float wide_
     LAO_EXACT float radius = lao_sqrt(lao_max(squared, least));
     LAO_EXACT float share = lao_min(dark / (1.04719755f * w * w), 1.0f);
     LAO_EXACT float ink = lao_clamp01(0.5f + (radius - r) / w) * (squared < least ? share : 1.0f);
-    LAO_EXACT float blur = lao_clamp01(5.0f * mean - 0.75f); /* cells too small to be seen */
-    LAO_EXACT float result = ink + blur * (dark - ink);
-    return result;
+    return ink;
 }
-/* Dots; where they would touch, white ones between them. a, b in [-1/2, 1/2]. */
-LAO_FN float sdv_stipple_ink(float a, float b, float dark, float wide_a, float wide_b) {
-    LAO_EXACT float widest = 0.5f - 0.25f * (wide_a + wide_b);
-    LAO_EXACT float touch = 3.14159265f * widest * widest;
-    if (dark <= 0.5f || (dark <= touch && widest > 0.0f)) {
-        return sdv_dot_ink(a, b, dark, wide_a, wide_b);
+/* Dots and, between them, three times as many that grow to their size while they shrink; dark <=
+   1/2, so that none touch. Cells that are too small to be seen turn grey. */
+LAO_FN float sdv_growing_dots(float a, float b, float dark, float wide_a, float wide_b,
+                              float grown) {
+    LAO_EXACT float own = dark - 0.75f * grown * dark;
+    float ink = sdv_dot_ink(a, b, own, wide_a, wide_b);
+    if (grown > 0.0f && (a > 0.25f || b > 0.25f)) {
+        LAO_EXACT float both = ink + sdv_dot_ink(sdv_finer_cell(a, 2.0f), sdv_finer_cell(b, 2.0f),
+                                                 grown * dark, 2.0f * wide_a, 2.0f * wide_b);
+        ink = lao_clamp01(both);
     }
-    float x = a < 0.0f ? a + 0.5f : a - 0.5f;
-    float y = b < 0.0f ? b + 0.5f : b - 0.5f;
-    LAO_EXACT float r = 1.0f - sdv_dot_ink(x, y, 1.0f - dark, wide_a, wide_b);
+    LAO_EXACT float blur = lao_clamp01(2.5f * (wide_a + wide_b) * (1.0f + grown) - 0.75f);
+    LAO_EXACT float r = ink + blur * (dark - ink);
     return r;
 }
-LAO_FN float sdv_crosshatch_ink(float a, float b, float dark, float wide_a, float wide_b) {
-    LAO_EXACT float each = 1.0f - lao_sqrt(lao_max(1.0f - dark, 0.0f));
+/* Dots; above a half white ones, around the corners of cells. a, b: 0 .. 1/2. */
+LAO_FN float sdv_stipple_ink(float a, float b, float dark, float wide_a, float wide_b,
+                             float grown) {
+    if (dark <= 0.5f) {
+        return sdv_growing_dots(a, b, dark, wide_a, wide_b, grown);
+    }
     LAO_EXACT float r =
-        1.0f - (1.0f - sdv_lines_ink(a, each, wide_a)) * (1.0f - sdv_lines_ink(b, each, wide_b));
+        1.0f - sdv_growing_dots(0.5f - a, 0.5f - b, 1.0f - dark, wide_a, wide_b, grown);
     return r;
 }
-/* u, v: radians; even in both, as (-u, -v) is the same place seen along the other direction. */
+LAO_FN float sdv_crosshatch_ink(float a, float b, float dark, float wide_a, float wide_b,
+                                float grown) {
+    LAO_EXACT float each = 1.0f - lao_sqrt(lao_max(1.0f - dark, 0.0f));
+    LAO_EXACT float r = 1.0f - (1.0f - sdv_growing_lines(a, each, wide_a, grown)) *
+                                   (1.0f - sdv_growing_lines(b, each, wide_b, grown));
+    return r;
+}
+/* u, v: radians; even in both, as (-u, -v) is the same place seen along the other direction.
+   wide_u, wide_v: periods per pixel; finer: see sdv_ink_finer. */
 LAO_FN float sdv_style_ink(lao_int style, float u, float v, float darkness, float wide_u,
-                           float wide_v) {
-    LAO_EXACT float a = u / LAO_TURN;
-    LAO_EXACT float b = v / LAO_TURN;
+                           float wide_v, float finer) {
+    lao_v2 lattice = sdv_ink_lattice(finer);
+    float a = sdv_finer_cell(u / LAO_TURN, lattice.x);
+    float b = sdv_finer_cell(v / LAO_TURN, lattice.x);
+    LAO_EXACT float wide_a = wide_u * lattice.x;
+    LAO_EXACT float wide_b = wide_v * lattice.x;
     float dark = lao_clamp01(darkness);
     if (style == SDV_STYLE_STIPPLE || (style == SDV_STYLE_LAYERED && dark < 0.35f)) {
-        return sdv_stipple_ink(a, b, dark, wide_u, wide_v);
+        return sdv_stipple_ink(a, b, dark, wide_a, wide_b, lattice.y);
     }
     if (style == SDV_STYLE_CROSSHATCH || (style == SDV_STYLE_LAYERED && dark > 0.7f)) {
-        return sdv_crosshatch_ink(a, b, dark, wide_u, wide_v);
+        return sdv_crosshatch_ink(a, b, dark, wide_a, wide_b, lattice.y);
     }
-    return sdv_lines_ink(b, dark, wide_v);
+    return sdv_growing_lines(b, dark, wide_b, lattice.y);
 }
 /* Sample i of SDV_PATTERN_SAMPLES^2 over a pixel at (a, b), periods: which of n x n thresholds
    holds there. The pattern lies in half a period and is mirrored, as (u, v) and (-u, -v) are one
@@ -2427,7 +2484,7 @@ LAO_FN float sdv_pattern_ink(float inked, float dark, float wide_u, float wide_v
 /* White that a style's ink and a depth shadow's lines, which go the other way, leave of a pixel.
    pattern: ink of SDV_STYLE_PATTERN. */
 LAO_FN float sdv_style_paper(lao_int style, lao_v2 phase, float darkness, float shadow,
-                             float wide_u, float wide_v, float pattern) {
+                             float wide_u, float wide_v, float finer, float pattern) {
     LAO_EXACT float lines = sdv_lines_ink(phase.x / LAO_TURN, lao_clamp01(shadow), wide_u);
     LAO_EXACT float left = 1.0f - lines;
     if (style == SDV_STYLE_PLAIN || style == SDV_STYLE_SHADOW) {
@@ -2435,7 +2492,7 @@ LAO_FN float sdv_style_paper(lao_int style, lao_v2 phase, float darkness, float 
     }
     float ink = pattern;
     if (style != SDV_STYLE_PATTERN) {
-        ink = sdv_style_ink(style, phase.x, phase.y, darkness, wide_u, wide_v);
+        ink = sdv_style_ink(style, phase.x, phase.y, darkness, wide_u, wide_v, finer);
     }
     LAO_EXACT float r = left * (1.0f - ink);
     return r;
@@ -5664,7 +5721,7 @@ SDV_API lao_v3 sdv_smooth_normal(const sdv_grid *grid, lao_v3 p, uint32_t cone, 
 static float sdv__room(const sdv_grid *g, uint32_t cone, lao_v3 p) {
     const lao_v4 *ends = g->cones + 2 * (size_t)cone;
     sdv_cone_point c = sdv_cone_point_make(p, ends[0], ends[1]);
-    float room = sdv_cone_radius(c, ends[0], ends[1]);
+    float room = sdv_cone_ball_radius(c, ends[0], ends[1]);
     return g->forms ? room * sdv_form_ratio(sdv__form_of(g, (float)cone)) : room;
 }
 SDV_API float sdv_openness(const sdv_grid *grid, const sdv_shapes *shapes, lao_v3 p, lao_v3 normal,

@@ -29,6 +29,9 @@
        ...
        vsf_near_free(&table); vsf_buffers_free(&buffers); vsf_mesh_free(&mesh);
 
+   FILES  lineao.h vesselsurface.h. To draw with vsf_module(): also a backend (see lineao.h) and
+   vesselsurface_shaders.h, beside lineao_shaders.h.
+
    CONFIGURATION (define before including)
        VESSELSURFACE_IMPLEMENTATION   the function bodies, in one translation unit
        VSF_API                        linkage of the public functions (default: extern)
@@ -395,8 +398,11 @@ typedef struct vsf_near {
 VSF_API lao_result vsf_near_make(const vsf_host *host, const vsf_near_desc *desc, vsf_near *table);
 VSF_API void vsf_near_free(vsf_near *table);
 /* Another beta (ms^2, > 0). Where lit parts grow, the old distances bound the new ones. The same
-   bits as vsf_near_make; the old table stays until the new one is done, and on failure. Fails with
-   NULL_ARGUMENT, SETTING, MEMORY, CANCELLED. */
+   bits as vsf_near_make; the old table stays until the new one is done, and on failure. For
+   programs in which the highlight changes while the lines stay, such as lineao-view: a program that
+   makes one table, as `lineao surface` does for all its frames, gives vsf_near_make the beta at
+   once. A vsf_object that showed the old table needs its `step` set to VSF_NONE, so that
+   vsf_object_time takes the new distances. Fails with NULL_ARGUMENT, SETTING, MEMORY, CANCELLED. */
 VSF_API lao_result vsf_near_update(const vsf_host *host, vsf_near *table, double beta);
 /* Distances (mm) at a step; VSF_FAR where nothing is lit. `distances`: vertex_count floats. A step
    beyond the last is the last. Thread: any. */
@@ -692,6 +698,10 @@ LAO_FN lao_v4 vsf_over(lao_v4 front, lao_v4 behind) {
     LAO_EXACT float w = front.w + t * behind.w;
     return lao_v4_make(x, y, z, w);
 }
+/* The greater of two, component by component. */
+LAO_FN lao_v4 vsf_greater(lao_v4 a, lao_v4 b) {
+    return lao_v4_make(lao_max(a.x, b.x), lao_max(a.y, b.y), lao_max(a.z, b.z), lao_max(a.w, b.w));
+}
 /* The alternative: light is added, at most 1. */
 LAO_FN lao_v4 vsf_add(lao_v4 front, lao_v4 behind) {
     LAO_EXACT float x = front.x + behind.x; /* exact: no sum may join a caller's product */
@@ -721,16 +731,24 @@ LAO_FN float vsf_gauss(float distance2, float sigma) {
     return x < -125.0f ? 0.0f : lao_exp2(x);
 }
 #define VSF_BLUR_REACH 3.0f /* samples farther than this many sigmas do not count */
-/* Weight of a sample in the blur of a centre with width `sigma` and depth `z`: only if it is behind
-   the centre, or if its own blur reaches it, so that what is in focus does not bleed. The sums of
-   weights and of weighted colours make a mean; the centre has weight 1. */
+#define VSF_BLUR_MOST 96    /* pixels to either side: the widest setting's reach */
+/* The focus blur passes by tiles of 16 x 16 pixels to which it brings no colour. */
+#define VSF_FOCUS_LEVEL 4u
+#define VSF_FOCUS_PIXELS 16
+/* Does a sample count in the blur of a centre of depth `z`? Only if it is behind it, or if its own
+   blur reaches it, so that what is in focus does not bleed. */
+LAO_FN bool vsf_blur_counts(float distance2, float z, float sample_sigma, float sample_z) {
+    LAO_EXACT float reach = VSF_BLUR_REACH * sample_sigma;
+    LAO_EXACT float reach2 = reach * reach;
+    return !(sample_z < z) || distance2 <= reach2;
+}
+/* Weight of a sample in the blur of a centre with width `sigma`. The sums of weights and of
+   weighted colours make a mean; the centre has weight 1. */
 LAO_FN float vsf_blur_weight(float distance2, float sigma, float z, float sample_sigma,
                              float sample_z) {
     LAO_EXACT float reach = VSF_BLUR_REACH * sigma;
-    LAO_EXACT float sample_reach = VSF_BLUR_REACH * sample_sigma;
     LAO_EXACT float reach2 = reach * reach;
-    LAO_EXACT float sample_reach2 = sample_reach * sample_reach;
-    if (distance2 > reach2 || (sample_z < z && distance2 > sample_reach2)) {
+    if (distance2 > reach2 || !vsf_blur_counts(distance2, z, sample_sigma, sample_z)) {
         return 0.0f;
     }
     return vsf_gauss(distance2, sigma);
@@ -4275,8 +4293,10 @@ VSF_API lao_result vsf_near_exact(const vsf_host *host, const vsf_near *table, d
 #define VSF__READ(image) {image, LAO_LEVEL_SAME, 0, LAO_PHASE_THIS, LAO_LOAD_DISCARD}
 #define VSF__OTHER(image) {image, LAO_LEVEL_SAME, 0, LAO_PHASE_OTHER, LAO_LOAD_DISCARD}
 #define VSF__CLEAR(image) {image, LAO_LEVEL_SAME, 0, LAO_PHASE_THIS, LAO_LOAD_CLEAR}
+#define VSF__CLEAR_OTHER(image) {image, LAO_LEVEL_SAME, 0, LAO_PHASE_OTHER, LAO_LOAD_CLEAR}
 #define VSF__KEEP(image) {image, LAO_LEVEL_SAME, 0, LAO_PHASE_THIS, LAO_LOAD_KEEP}
 #define VSF__SMALL(image) {image, LAO_LEVEL_INDEX, VSF_SHADOW_LEVEL, LAO_PHASE_THIS, LAO_LOAD_DISCARD}
+#define VSF__TILES(image) {image, LAO_LEVEL_INDEX, VSF_FOCUS_LEVEL, LAO_PHASE_THIS, LAO_LOAD_DISCARD}
 #define VSF__SURFACE {"#surface_points", '>', 0}
 #define VSF__ANY {NULL, 0, 0}
 #define VSF__MESH VSF__READ("#surface_points"), VSF__READ("#surface_normals"), VSF__READ("#surface_triangles")
@@ -4284,12 +4304,13 @@ VSF_API lao_result vsf_near_exact(const vsf_host *host, const vsf_near *table, d
 #define VSF__PLAIN(format, size) format, size, 0, 0, NULL, 0, LAO_ENCODING_PLAIN
 
 static const lao_image_row vsf__images[] = {
-    /* one texel per vertex: its place and measure (1/mm); its normal and nearness, x of the look-up */
-    {"surface_measure",  VSF__PLAIN(LAO_FORMAT_RGBA32F, LAO_SIZE_ITEMS), {0, 0, 0, 0}, VSF__ANY, {NULL, NULL, NULL, NULL}},
-    {"surface_nearness", VSF__PLAIN(LAO_FORMAT_RGBA32F, LAO_SIZE_ITEMS), {0, 0, 0, 0}, VSF__ANY, {NULL, NULL, NULL, NULL}},
-    /* front faces, premultiplied: those composed so far, and the next one */
+    /* one texel per vertex: its measure (1/mm); its nearness, x of the look-up */
+    {"surface_measure",  VSF__PLAIN(LAO_FORMAT_R32F, LAO_SIZE_ITEMS), {0, 0, 0, 0}, VSF__ANY, {NULL, NULL, NULL, NULL}},
+    {"surface_nearness", VSF__PLAIN(LAO_FORMAT_R32F, LAO_SIZE_ITEMS), {0, 0, 0, 0}, VSF__ANY, {NULL, NULL, NULL, NULL}},
+    /* front faces, premultiplied, composed so far: a layer writes one partner from the other, and only where it has pixels.
+       What a pixel has composed only grows, so the greater of both partners is all of it */
     {"surface_over",     VSF__PLAIN(LAO_FORMAT_RGBA16F, LAO_SIZE_FULL), {0, 0, 0, 0}, VSF__ANY, {NULL, NULL, NULL, NULL}},
-    {"surface_layer",    VSF__PLAIN(LAO_FORMAT_RGBA16F, LAO_SIZE_FULL), {0, 0, 0, 0}, {"layers", '>', 0}, {NULL, NULL, NULL, NULL}},
+    {"surface_composed", VSF__PLAIN(LAO_FORMAT_RGBA16F, LAO_SIZE_FULL), {0, 0, 0, 0}, {"surface_geometry", '=', 1}, {NULL, NULL, NULL, NULL}},
     /* whether the layer before has any pixel: by tiles, and all in all */
     {"surface_tiles",    LAO_FORMAT_R32F, LAO_SIZE_FIXED, VSF_LEFT_TILES, VSF_LEFT_TILES, NULL, 0, LAO_ENCODING_PLAIN, {0, 0, 0, 0}, {"layers", '>', 0}, {NULL, NULL, NULL, NULL}},
     {"surface_left",     LAO_FORMAT_R32F, LAO_SIZE_FIXED, 1, 1, NULL, 0, LAO_ENCODING_PLAIN, {0, 0, 0, 0}, {"layers", '>', 0}, {NULL, NULL, NULL, NULL}},
@@ -4303,9 +4324,12 @@ static const lao_image_row vsf__images[] = {
     {"shadow_depth",     LAO_FORMAT_RGBA32F, LAO_SIZE_VIEW, 0, 0, "*", 0, LAO_ENCODING_PLAIN, {0, 0, 0, 0}, {"depth_shadow", '=', 1}, {NULL, NULL, NULL, NULL}},
     {"shadow_x",         LAO_FORMAT_RGBA32F, LAO_SIZE_VIEW, 0, 0, "*", 0, LAO_ENCODING_PLAIN, {0, 0, 0, 0}, {"depth_shadow", '=', 1}, {NULL, NULL, NULL, NULL}},
     {"shadow_blurred",   LAO_FORMAT_RGBA32F, LAO_SIZE_VIEW, 0, 0, "*", 0, LAO_ENCODING_PLAIN, {0, 0, 0, 0}, {"depth_shadow", '=', 1}, {NULL, NULL, NULL, NULL}},
-    /* focus: what is out of focus in a pixel and its depth (mm), blurred along x, then along y */
+    /* focus: what is out of focus in a pixel and its depth (mm), blurred along x, then along y; by tiles whether there is any
+       colour, and whether there is any that the blur along x, and along both, brings there */
     {"focus_color",      VSF__PLAIN(LAO_FORMAT_RGBA32F, LAO_SIZE_VIEW), {0, 0, 0, 0}, {"focus", '=', 1}, {NULL, NULL, NULL, NULL}},
     {"focus_depth",      VSF__PLAIN(LAO_FORMAT_R32F, LAO_SIZE_VIEW),    {0, 0, 0, 0}, {"focus", '=', 1}, {NULL, NULL, NULL, NULL}},
+    {"focus_tiles",      LAO_FORMAT_R32F, LAO_SIZE_VIEW, 0, 0, "*", 0, LAO_ENCODING_PLAIN, {0, 0, 0, 0}, {"focus", '=', 1}, {NULL, NULL, NULL, NULL}},
+    {"focus_near_tiles", LAO_FORMAT_RGBA32F, LAO_SIZE_VIEW, 0, 0, "*", 0, LAO_ENCODING_PLAIN, {0, 0, 0, 0}, {"focus", '=', 1}, {NULL, NULL, NULL, NULL}},
     {"focus_x",          VSF__PLAIN(LAO_FORMAT_RGBA32F, LAO_SIZE_VIEW), {0, 0, 0, 0}, {"focus", '=', 1}, {NULL, NULL, NULL, NULL}},
     {"focus_blurred",    VSF__PLAIN(LAO_FORMAT_RGBA32F, LAO_SIZE_VIEW), {0, 0, 0, 0}, {"focus", '=', 1}, {NULL, NULL, NULL, NULL}}
 };
@@ -4318,19 +4342,19 @@ static const lao_pass_row vsf__passes[] = {
      {VSF__WRITE("surface_measure"), VSF__WRITE("surface_nearness")}, {VSF__READ("#surface_points"), VSF__READ("#surface_normals"), VSF__READ("#surface_rings"), VSF__READ("#surface_near"), VSF__READ("#surface_values")}},
     /* the nearest front face, then peel by peel those behind it, and all of them over the scene */
     {"surface_front", LAO_PASS_DRAW_MESH, "surface_mesh", 1, LAO_STAGE_COMPOSE, LAO_SCOPE_PER_SET, LAO_REPEAT_NONE, NULL, LAO_BLEND_NONE, LAO_DEPTH_NEARER, LAO_CULL_BACK, {VSF__SURFACE},
-     {VSF__CLEAR("surface_over"), VSF__CLEAR("surface_position"), VSF__CLEAR("surface_normal"), VSF__CLEAR("surface_lut"), VSF__CLEAR("surface_z")}, {VSF__FRONT}},
+     {VSF__CLEAR("surface_over"), VSF__CLEAR_OTHER("surface_over"), VSF__CLEAR("surface_position"), VSF__CLEAR("surface_normal"), VSF__CLEAR("surface_lut"), VSF__CLEAR("surface_z")}, {VSF__FRONT}},
     {"surface_nearest", LAO_PASS_FULLSCREEN, "surface_nearest", 0, LAO_STAGE_COMPOSE, LAO_SCOPE_PER_SET, LAO_REPEAT_NONE, NULL, LAO_BLEND_NONE, LAO_DEPTH_NEARER, LAO_CULL_NONE, {VSF__SURFACE},
      {VSF__KEEP("surface_nearest")}, {VSF__READ("surface_z")}},
-    {"surface_tiles", LAO_PASS_FULLSCREEN, "surface_left", 0, LAO_STAGE_COMPOSE, LAO_SCOPE_PER_SET, LAO_REPEAT_COUNT, "layers", LAO_BLEND_NONE, LAO_DEPTH_NONE, LAO_CULL_NONE, {VSF__SURFACE},
+    {"surface_tiles", LAO_PASS_FULLSCREEN, "surface_left", 0, LAO_STAGE_COMPOSE, LAO_SCOPE_PER_SET, LAO_REPEAT_NONE, NULL, LAO_BLEND_NONE, LAO_DEPTH_NONE, LAO_CULL_NONE, {VSF__SURFACE, {"layers", '>', 0}},
      {VSF__WRITE("surface_tiles")}, {VSF__READ("surface_z")}},
-    {"surface_left", LAO_PASS_FULLSCREEN, "surface_left", 1, LAO_STAGE_COMPOSE, LAO_SCOPE_PER_SET, LAO_REPEAT_WITH_LAST, NULL, LAO_BLEND_NONE, LAO_DEPTH_NONE, LAO_CULL_NONE, {VSF__SURFACE},
+    {"surface_left", LAO_PASS_FULLSCREEN, "surface_left", 1, LAO_STAGE_COMPOSE, LAO_SCOPE_PER_SET, LAO_REPEAT_COUNT, "layers", LAO_BLEND_NONE, LAO_DEPTH_NONE, LAO_CULL_NONE, {VSF__SURFACE},
      {VSF__WRITE("surface_left")}, {VSF__READ("surface_tiles")}},
     {"surface_peel", LAO_PASS_DRAW_MESH, "surface_mesh", 2, LAO_STAGE_COMPOSE, LAO_SCOPE_PER_SET, LAO_REPEAT_WITH_LAST, NULL, LAO_BLEND_NONE, LAO_DEPTH_NEARER, LAO_CULL_BACK, {VSF__SURFACE},
-     {VSF__CLEAR("surface_layer"), {"surface_z", LAO_LEVEL_SAME, 0, LAO_PHASE_OTHER, LAO_LOAD_CLEAR}}, {VSF__FRONT, VSF__READ("surface_z"), VSF__READ("surface_left")}},
-    {"surface_under", LAO_PASS_FULLSCREEN, "surface_layers", 0, LAO_STAGE_COMPOSE, LAO_SCOPE_PER_SET, LAO_REPEAT_WITH_LAST, NULL, LAO_BLEND_NONE, LAO_DEPTH_NONE, LAO_CULL_NONE, {VSF__SURFACE},
-     {VSF__OTHER("surface_over")}, {VSF__READ("surface_over"), VSF__READ("surface_layer")}},
+     {{"surface_over", LAO_LEVEL_SAME, 0, LAO_PHASE_OTHER, LAO_LOAD_KEEP}, VSF__CLEAR_OTHER("surface_z")}, {VSF__FRONT, VSF__READ("surface_z"), VSF__READ("surface_left"), VSF__READ("surface_over")}},
+    {"surface_tiles_left", LAO_PASS_FULLSCREEN, "surface_left", 2, LAO_STAGE_COMPOSE, LAO_SCOPE_PER_SET, LAO_REPEAT_WITH_LAST, NULL, LAO_BLEND_NONE, LAO_DEPTH_NONE, LAO_CULL_NONE, {VSF__SURFACE},
+     {VSF__OTHER("surface_tiles")}, {VSF__READ("surface_z"), VSF__READ("surface_tiles")}},
     {"surface_over", LAO_PASS_FULLSCREEN, "surface_layers", 0, LAO_STAGE_COMPOSE, LAO_SCOPE_PER_SET, LAO_REPEAT_NONE, NULL, LAO_BLEND_NONE, LAO_DEPTH_NONE, LAO_CULL_NONE, {VSF__SURFACE},
-     {VSF__OTHER("shaded")}, {VSF__READ("surface_over"), VSF__READ("shaded")}},
+     {VSF__OTHER("shaded"), VSF__WRITE("surface_composed")}, {VSF__READ("surface_over"), {"surface_over", LAO_LEVEL_SAME, 0, LAO_PHASE_OTHER, LAO_LOAD_DISCARD}, VSF__READ("shaded")}},
     /* effects of the whole picture */
     {"shadow_depth", LAO_PASS_FULLSCREEN, "surface_shadow", 0, LAO_STAGE_COMPOSE, LAO_SCOPE_FRAME, LAO_REPEAT_NONE, NULL, LAO_BLEND_NONE, LAO_DEPTH_NONE, LAO_CULL_NONE, {VSF__SURFACE, {"depth_shadow", '=', 1}},
      {VSF__SMALL("shadow_depth")}, {VSF__READ("zbuffer"), VSF__READ("surface_nearest")}},
@@ -4344,10 +4368,14 @@ static const lao_pass_row vsf__passes[] = {
      {VSF__OTHER("shaded")}, {VSF__READ("shaded"), VSF__READ("zbuffer"), VSF__READ("surface_nearest")}},
     {"focus_pixels", LAO_PASS_FULLSCREEN, "surface_focus", 0, LAO_STAGE_COMPOSE, LAO_SCOPE_FRAME, LAO_REPEAT_NONE, NULL, LAO_BLEND_NONE, LAO_DEPTH_NONE, LAO_CULL_NONE, {VSF__SURFACE, {"focus", '=', 1}},
      {VSF__WRITE("focus_color"), VSF__WRITE("focus_depth")}, {VSF__READ("shaded"), VSF__READ("zbuffer"), VSF__READ("surface_nearest")}},
+    {"focus_tiles", LAO_PASS_FULLSCREEN, "surface_tiles", 0, LAO_STAGE_COMPOSE, LAO_SCOPE_FRAME, LAO_REPEAT_NONE, NULL, LAO_BLEND_NONE, LAO_DEPTH_NONE, LAO_CULL_NONE, {VSF__SURFACE, {"focus", '=', 1}},
+     {VSF__TILES("focus_tiles")}, {VSF__READ("focus_color")}},
+    {"focus_near_tiles", LAO_PASS_FULLSCREEN, "surface_tiles", 1, LAO_STAGE_COMPOSE, LAO_SCOPE_FRAME, LAO_REPEAT_NONE, NULL, LAO_BLEND_NONE, LAO_DEPTH_NONE, LAO_CULL_NONE, {VSF__SURFACE, {"focus", '=', 1}},
+     {VSF__TILES("focus_near_tiles")}, {VSF__TILES("focus_tiles")}},
     {"focus_x", LAO_PASS_FULLSCREEN, "surface_blur", 0, LAO_STAGE_COMPOSE, LAO_SCOPE_FRAME, LAO_REPEAT_NONE, NULL, LAO_BLEND_NONE, LAO_DEPTH_NONE, LAO_CULL_NONE, {VSF__SURFACE, {"focus", '=', 1}},
-     {VSF__WRITE("focus_x")}, {VSF__READ("focus_color"), VSF__READ("focus_depth")}},
+     {VSF__WRITE("focus_x")}, {VSF__READ("focus_color"), VSF__READ("focus_depth"), VSF__TILES("focus_near_tiles")}},
     {"focus_y", LAO_PASS_FULLSCREEN, "surface_blur", 1, LAO_STAGE_COMPOSE, LAO_SCOPE_FRAME, LAO_REPEAT_NONE, NULL, LAO_BLEND_NONE, LAO_DEPTH_NONE, LAO_CULL_NONE, {VSF__SURFACE, {"focus", '=', 1}},
-     {VSF__WRITE("focus_blurred")}, {VSF__READ("focus_x"), VSF__READ("focus_depth")}},
+     {VSF__WRITE("focus_blurred")}, {VSF__READ("focus_x"), VSF__READ("focus_depth"), VSF__TILES("focus_near_tiles")}},
     {"focus", LAO_PASS_FULLSCREEN, "surface_effect", 2, LAO_STAGE_COMPOSE, LAO_SCOPE_FRAME, LAO_REPEAT_NONE, NULL, LAO_BLEND_NONE, LAO_DEPTH_NONE, LAO_CULL_NONE, {VSF__SURFACE, {"focus", '=', 1}},
      {VSF__OTHER("shaded")}, {VSF__READ("shaded"), VSF__READ("zbuffer"), VSF__READ("surface_nearest"), VSF__READ("focus_blurred")}}
 };

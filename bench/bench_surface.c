@@ -92,7 +92,7 @@ static const lao_module *floored_make(floored *f) {
 
 /* What is told: the sum of the rows of a name. */
 static const char *const told[] = {"floor_gouraud", "surface_measure", "surface_back",
-                                   "surface_front", "surface_peel",    "surface_under",
+                                   "surface_front", "surface_peel",    "left",
                                    "surface_over",  "shadow",          "focus"};
 enum { TOLD = sizeof told / sizeof *told };
 
@@ -112,6 +112,8 @@ static bool tells(const char *pass, const char *name) {
         return strstr(pass, "shadow") != NULL;
     if (strcmp(name, "focus") == 0)
         return strncmp(pass, "focus", 5) == 0;
+    if (strcmp(name, "left") == 0) /* whether there is anything left to peel */
+        return strncmp(pass, "surface_tiles", 13) == 0 || strcmp(pass, "surface_left") == 0;
     return strcmp(pass, name) == 0;
 }
 
@@ -256,7 +258,7 @@ void bench_surface_print(const cJSON *document) {
     const cJSON *row;
     printf("milliseconds, least of %d frames\n"
            "triangles  pixels     layers  effects  backend  frame  upload  gouraud  measure  back "
-           " front   peel  under   over  shadow  focus  frame/gouraud\n",
+           " front   peel   left   over  shadow  focus  frame/gouraud\n",
            ROUNDS);
     cJSON_ArrayForEach(row, cJSON_GetObjectItemCaseSensitive(document, "surface")) {
         static const char *const names[] = {

@@ -1,5 +1,5 @@
 /* What does not change from corner to corner, one texel per vertex: the suggestive-contour measure, which is vsf_measure by
-   texel fetches (METHODS 10.3), and x of the look-up, beside the vertex' place and normal. */
+   texel fetches (METHODS 10.3), and x of the look-up. */
 LAO_TEX(0, samplerBuffer, points)
 LAO_TEX(1, samplerBuffer, normals)
 LAO_TEX(2, samplerBuffer, rings)
@@ -36,7 +36,7 @@ void main() {
         int other = int(entry.w);
         ring = vsf_ring_add(ring, entry, vsf_light(eye, texelFetch(points, other).xyz, texelFetch(normals, other).xyz, false));
     }
-    out_measure = vec4(point.xyz, vsf_ring_end(ring));
-    out_nearness = vec4(normal.xyz, nearness(vertex));
+    out_measure = vec4(vsf_ring_end(ring));
+    out_nearness = vec4(nearness(vertex));
 }
 #endif

@@ -1,18 +1,20 @@
 /* Faces of a surface. Variant 0: opaque back faces. 1: the nearest front faces, shaded by shape and flow (L14; METHODS
-   9.3, 10.4). 2: the nearest of those behind the layer before. */
+   9.3, 10.4). 2: the nearest of those behind the layer before, under what is composed so far. */
 LAO_TEX(0, samplerBuffer, points)
 LAO_TEX(1, samplerBuffer, normals)
 LAO_TEX(2, samplerBuffer, triangles)
-LAO_TEX(3, sampler2D, measures) /* 1, 2: both varyings of each vertex */
+LAO_TEX(3, sampler2D, measures) /* 1, 2: of each vertex. Behind the buffers, which all variants read: see docs/algorithm.md */
 LAO_TEX(4, sampler2D, nearnesses)
 LAO_TEX(5, sampler2D, scene_z)
 LAO_TEX(6, samplerBuffer, map)
 LAO_TEX(7, sampler2D, layer_z)
 LAO_TEX(8, sampler2D, left) /* 0: the layer before is empty */
+LAO_TEX(9, sampler2D, composed)
 LAO_CONSTANT(0, lao_constant_variant)
 LAO_CONSTANT(1, lao_constant_shading)
 LAO_CONSTANT(2, lao_constant_falloff_form)
 LAO_CONSTANT(3, lao_constant_near_colors)
+LAO_CONSTANT(4, lao_constant_blend)
 
 LAO_VARYING(0, vec4, at_point)  /* world, mm; measure */
 LAO_VARYING(1, vec4, at_normal) /* world; x of the look-up */
@@ -23,13 +25,12 @@ void main() {
     vec4 triangle = texelFetch(triangles, corner / 3);
     int k = corner % 3;
     int vertex = int(k == 0 ? triangle.x : (k == 1 ? triangle.y : triangle.z));
-    if (lao_constant_variant == 0) {
-        at_point = vec4(texelFetch(points, vertex).xyz, 0.0);
-        at_normal = vec4(texelFetch(normals, vertex).xyz, 0.0);
-    } else {
+    at_point = vec4(texelFetch(points, vertex).xyz, 0.0);
+    at_normal = vec4(texelFetch(normals, vertex).xyz, 0.0);
+    if (lao_constant_variant != 0) {
         ivec2 item = ivec2(vertex % 2048, vertex / 2048);
-        at_point = texelFetch(measures, item, 0);
-        at_normal = texelFetch(nearnesses, item, 0);
+        at_point.w = texelFetch(measures, item, 0).x;
+        at_normal.w = texelFetch(nearnesses, item, 0).x;
     }
     lao_v4 clip = lao_project(lao_frame.projection, lao_transform(lao_frame.view, at_point.xyz));
     if (lao_constant_variant == 2 && texelFetch(left, ivec2(0), 0).x < 0.5) {
@@ -40,9 +41,10 @@ void main() {
 #endif
 
 LAO_OUT(0, vec4, out_color)
-LAO_OUT(1, vec4, out_position)
-LAO_OUT(2, vec4, out_normal)
-LAO_OUT(3, vec4, out_lookup)
+LAO_OUT(1, vec4, out_partner) /* 1: what the second layer begins with */
+LAO_OUT(2, vec4, out_position)
+LAO_OUT(3, vec4, out_normal)
+LAO_OUT(4, vec4, out_lookup)
 
 #ifdef LAO_FRAGMENT
 /* x by the object's colour map. */
@@ -66,6 +68,7 @@ void main() {
     out_lookup = vec4(0.0);
     if (lao_constant_variant == 0) {
         out_color = vec4(wall, 1.0);
+        out_partner = vec4(0.0);
         return;
     }
     ivec2 pixel = LAO_PIXEL;
@@ -86,14 +89,25 @@ void main() {
         lookup = vsf_lookup(at_normal.w, y);
     }
     out_lookup = vec4(lookup.xyz, at_normal.w);
+    lao_v4 color;
     if (lao_constant_shading == VSF_SHADING_ADAPTIVE) {
-        out_color = lookup;
+        color = lookup;
     } else if (lao_constant_shading == VSF_SHADING_TRANSPARENT) {
-        out_color = vsf_premultiply(wall, lao_setting_opacity);
+        color = vsf_premultiply(wall, lao_setting_opacity);
     } else if (lao_constant_falloff_form == VSF_FALLOFF_PAPER) {
-        out_color = vsf_premultiply(wall, vsf_fresnel(facing, lao_setting_falloff));
+        color = vsf_premultiply(wall, vsf_fresnel(facing, lao_setting_falloff));
     } else {
-        out_color = vsf_premultiply(wall, vsf_fresnel_rim(facing, lao_setting_falloff));
+        color = vsf_premultiply(wall, vsf_fresnel_rim(facing, lao_setting_falloff));
     }
+    if (lao_constant_variant == 2) {
+        vec4 front = texelFetch(composed, pixel, 0);
+        if (lao_constant_blend == VSF_BLEND_ADD) {
+            color = vsf_add(front, color);
+        } else {
+            color = vsf_over(front, color);
+        }
+    }
+    out_color = color;
+    out_partner = color;
 }
 #endif

@@ -22,7 +22,7 @@ float room_at(lao_v3 p, float cone) {
     int at = 2 * int(cone);
     vec4 a = texelFetch(cones, at);
     vec4 b = texelFetch(cones, at + 1);
-    float room = sdv_cone_radius(sdv_cone_point_make(p, a, b), a, b);
+    float room = sdv_cone_ball_radius(sdv_cone_point_make(p, a, b), a, b);
     if (lao_constant_has_vessel_forms != 0) {
         LAO_EXACT float narrow = room * sdv_form_ratio(form_at(cone));
         return narrow;

@@ -32,15 +32,14 @@ static int64_t widest_tick(const layout *l) {
     return widest;
 }
 
-/* Sizes, as if the whole began at (0, 0). */
-static layout measure(const picture *p, legend_side side, const legend *one) {
+/* Sizes for a bar of this length, as if the whole began at (0, 0). */
+static layout measure(legend_side side, const legend *one, double size, int64_t length) {
     layout l;
     memset(&l, 0, sizeof l);
-    double size = text_size(p);
     l.style.size = size;
     l.style.outline_width = fmax(1, 0.11 * size);
     l.upright = side != LEGEND_BOTTOM;
-    l.length = (int64_t)((l.upright ? p->height : p->width) * 0.45);
+    l.length = length;
     l.thickness = (int64_t)(0.8 * size);
     l.tick = (int64_t)(0.3 * size) + 1;
     l.gap = (int64_t)(0.35 * size) + 1;
@@ -129,18 +128,91 @@ static bool draw(picture *p, layout *l, const legend *one) {
                      one->title ? one->title : "", &l->style);
 }
 
-bool legend_draw(picture *p, legend_side side, const legend *legends, uint32_t count) {
-    int64_t margin = (int64_t)(1.2 * text_size(p)), used = margin;
-    bool ok = true;
-    for (uint32_t i = 0; i < count && ok; i++) {
-        layout l = measure(p, side, &legends[i]);
-        int64_t width = p->width, height = p->height;
-        if (side == LEGEND_BOTTOM)
-            move(&l, (width - l.box[2]) / 2, height - used - l.box[3]);
-        else
-            move(&l, side == LEGEND_LEFT ? used : width - used - l.box[2], (height - l.box[3]) / 2);
-        used += margin + (side == LEGEND_BOTTOM ? l.box[3] : l.box[2]);
-        ok = draw(p, &l, &legends[i]);
+/* ---- where they stand ------------------------------------------------------------------- */
+
+enum { MOST = 16 };
+typedef struct arrangement {
+    uint32_t count;
+    layout each[MOST];
+} arrangement;
+
+/* The length of bars that stand in one line along their side. */
+static int64_t shared_length(legend_side side, const legend *legends, uint32_t count, double size,
+                             int64_t side_length, int64_t margin) {
+    int64_t left = side_length - margin;
+    for (uint32_t i = 0; i < count; i++)
+        left -= measure(side, &legends[i], size, 0).box[side == LEGEND_BOTTOM ? 2 : 3] + margin;
+    return left > 0 ? left / count : 0;
+}
+
+/* Places legends with text of this size, each further away from the side than the one before, or in
+ * line along it. False: they do not fit, or would take too much of the picture. */
+static bool arrange(const picture *p, legend_side side, const legend *legends, uint32_t count,
+                    double size, bool in_line, arrangement *out) {
+    bool bottom = side == LEGEND_BOTTOM;
+    int64_t margin = (int64_t)(1.2 * size), used = margin, deepest = 0, at = 0;
+    int64_t width = p->width, height = p->height, along = bottom ? width : height;
+    int64_t length = (int64_t)((double)along * 0.45);
+    if (in_line) {
+        int64_t shared = shared_length(side, legends, count, size, along, margin);
+        length = shared < length ? shared : length;
     }
+    if ((double)length < 4 * size)
+        return false;
+    for (uint32_t i = 0; i < count; i++) {
+        layout *l = &out->each[i];
+        *l = measure(side, &legends[i], size, length);
+        int64_t extent = l->box[bottom ? 2 : 3], depth = l->box[bottom ? 3 : 2];
+        int64_t start = in_line ? at : (along - extent) / 2;
+        if (extent > along)
+            return false;
+        if (bottom)
+            move(l, start, height - used - depth);
+        else
+            move(l, side == LEGEND_LEFT ? used : width - used - depth, start);
+        at += extent + margin;
+        deepest = depth > deepest ? depth : deepest;
+        used += in_line ? 0 : depth + margin;
+    }
+    for (uint32_t i = 0; i < count && in_line; i++) { /* one edge, their middle at the side's */
+        layout *l = &out->each[i];
+        int64_t middle = (along - at + margin) / 2, edge = l->box[bottom ? 3 : 2] - deepest;
+        move(l, bottom ? middle : side == LEGEND_RIGHT ? edge : 0, bottom ? edge : middle);
+    }
+    out->count = count;
+    used += in_line ? deepest + margin : 0;
+    return (double)used <= (in_line ? 0.6 : 0.42) * (double)(bottom ? height : width);
+}
+
+/* As many as there is room for, with text as large as there is. */
+static arrangement arrange_most(const picture *p, legend_side side, const legend *legends,
+                                uint32_t count) {
+    const double usual = text_size(p), least = 8;
+    arrangement made;
+    for (count = count < MOST ? count : MOST; count > 0; count--) {
+        for (double size = usual; size >= least; size *= 0.9) {
+            if (arrange(p, side, legends, count, size, false, &made) ||
+                (count > 1 && arrange(p, side, legends, count, size, true, &made)))
+                return made;
+        }
+    }
+    made.count = 0;
+    return made;
+}
+
+uint32_t legend_room(uint32_t width, uint32_t height, legend_side side, const legend *legends,
+                     uint32_t count) {
+    picture p;
+    memset(&p, 0, sizeof p);
+    p.width = width;
+    p.height = height;
+    return arrange_most(&p, side, legends, count).count;
+}
+
+bool legend_draw(picture *p, legend_side side, const legend *legends, uint32_t count) {
+    arrangement made = arrange_most(p, side, legends, count);
+    bool ok = true;
+    for (uint32_t i = 0; i < made.count && ok; i++)
+        ok = draw(p, &made.each[i], &legends[i]);
     return ok;
 }

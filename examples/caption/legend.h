@@ -18,7 +18,13 @@ typedef struct legend {
  * the picture: upright at the left and right with low values below, lying at the bottom with low
  * values to the left. Several legends stand side by side (above each other at the bottom). Sizes
  * follow the smaller side of the picture; ink is dark or light as the picture below asks for, with
- * an outline of the other. False: out of memory. */
+ * an outline of the other. In a small picture they stand in line along their side, with shorter
+ * bars and smaller text; where even so they would take more than 3/5 of it, the last ones are left
+ * out. False: out of memory. */
 bool legend_draw(picture *p, legend_side side, const legend *legends, uint32_t count);
+
+/* How many of them legend_draw draws in a picture of this size. */
+uint32_t legend_room(uint32_t width, uint32_t height, legend_side side, const legend *legends,
+                     uint32_t count);
 
 #endif

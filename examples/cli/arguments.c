@@ -4,6 +4,7 @@
 #include "io_volume.h"
 #include "report.h"
 #include "scene.h"
+#include "surface.h"
 #include "video.h"
 
 #include <math.h>
@@ -87,7 +88,7 @@ static const flag_row flags[] = {
     {"--nodes", NULL, "N", FLAG_COUNT, CLI_VESSEL, ALL(vessel.nodes), NULL, "of the embedded tree, when no TREE is given (3000)"},
     {"--cameras", NULL, "FILE.json", FLAG_TEXT, CLI_VESSEL, ALL(vessel.cameras), NULL, "an array of cameras: one picture for each"},
     {"--frames", NULL, "N", FLAG_COUNT, CLI_VESSEL, ALL(frames), NULL, "pictures of one turn around the tree; of --cameras, the first N"},
-    {"--lines", NULL, "FILE", FLAG_TEXT, CLI_SURFACE, ALL(surface.lines), NULL, "pathlines with the point array 'time' (ms), or steady lines with 'speed' or 'velocity' (m/s): drawn inside, and what the surface lights up for"},
+    {"--lines", NULL, "FILE|none", FLAG_TEXT, CLI_SURFACE, ALL(surface.lines), NULL, "pathlines with the point array 'time' (ms), or steady lines with 'speed' or 'velocity' (m/s): drawn inside, and what the surface lights up for; none: not even the flow of an embedded surface"},
     {"--baseline", NULL, "NAME", FLAG_CHOICE, CLI_SURFACE, ALL(surface.baseline), "transparent|fresnel", "for comparison, the setting shading: transparent or fresnel"},
     {"--brightness", NULL, "MM|auto", FLAG_AUTO, CLI_SURFACE, ALL(surface.brightness), NULL, "how much the wall shows of its shape; auto: by its median curvature (of a MESH 1.5, else auto)"},
     {"--focus", NULL, "NEAR,FAR|X,Y,Z,R", FLAG_FOCUS, CLI_SURFACE, ALL(surface), NULL, "blur what is nearer or farther from the eye than this (mm), or than a ball"},
@@ -98,7 +99,7 @@ static const flag_row flags[] = {
     {"--smooth", NULL, "N", FLAG_COUNT, CLI_SURFACE, ALL(surface.smooth), NULL, "smooth the MESH by N double steps that keep its volume (Taubin)"},
     {"--subdivide", NULL, "N", FLAG_COUNT, CLI_SURFACE, ALL(surface.subdivide), NULL, "each time four triangles for one (Loop), 1..4"},
     {"--triangles", NULL, "N", FLAG_COUNT, CLI_SURFACE, ALL(surface.triangles), NULL, "merge vertices until N triangles are left at most, 100..16777216 (of meshes that have more: 16777216)"},
-    {"--scene", NULL, "NAME", FLAG_CHOICE, CLI_SURFACE, ALL(scene), "aorta|aneurysm|liver|bone", "embedded surface, when no MESH is given: aorta (an arch with a bulge, and its flow), aneurysm, liver (with a vein inside) or bone"},
+    {"--scene", NULL, "NAME", FLAG_CHOICE, CLI_SURFACE, ALL(scene), "aorta|aneurysm|liver|bone", "embedded surface, when no MESH is given: aorta (an arch with a bulge) and aneurysm, each with its flow, liver (with a vein inside) or bone"},
     {"--frames", NULL, "N", FLAG_COUNT, CLI_SURFACE, ALL(frames), NULL, "a sequence of pictures or a video over one period of the lines, or from their first time to the last"},
     {"--time", NULL, "MS", FLAG_NUMBER, CLI_SURFACE, ALL(time), NULL, "what is lit: the lines around this time, and the surface near them (0; of the embedded flow 180, of a VOLUME half of the median line's)"},
     {"--unit", NULL, "NAME", FLAG_CHOICE, CLI_SURFACE, FILE_(unit), "mm|cm|um|m|m/s|cm/s|mm/s", "of the MESH or TREE: mm (default), cm, um or m; of a VOLUME's velocities: m/s (default), cm/s or mm/s"},
@@ -683,8 +684,7 @@ static bool check_vessel(const cli_options *o) {
 static bool check_surface(const cli_options *o) {
     const cli_surface_options *s = &o->surface;
     bool volume = o->file_count > 0 && io_is_volume(o->files[0].path);
-    bool flow =
-        s->lines || volume || (o->file_count == 0 && (!o->scene || strcmp(o->scene, "aorta") == 0));
+    bool flow = volume || cli_wall_has_lines(o);
     if (o->file_count > 1 && !volume)
         return cli_fail("%s: is a second MESH, and one is drawn at a time", o->files[1].path);
     if (o->flow_flag && !volume)

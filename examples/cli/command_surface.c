@@ -153,7 +153,7 @@ static bool render(cli_wall *wall) {
         return false;
     cli_wall_time(wall, (double)shot.time, &update); /* all goes up with the object */
     bool ok =
-        cli_write_camera(options, &shot.camera) &&
+        cli_wall_legends_check(wall, &shot) && cli_write_camera(options, &shot.camera) &&
         (!options->surface.vertices || write_vertices(wall, &shot, options->surface.vertices));
     if (!ok || (!options->out && !options->dump && !options->timings))
         return ok;

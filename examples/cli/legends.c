@@ -58,17 +58,21 @@ static void add_object(scales *s, const cli_object *object) {
     s->count += count;
 }
 
-bool cli_legends_draw(const cli_options *options, const cli_scene *scene, const legend *more,
-                      uint32_t more_count, picture *p) {
+/* All that the options ask for; *side is where. NULL with *ok: none. */
+static scales *collect(const cli_options *options, const cli_scene *scene, const legend *more,
+                       uint32_t more_count, legend_side *at, bool *ok) {
     static const char *const sides[] = {"left", "right", "bottom"};
     uint32_t side = 0;
+    *ok = true;
     while (side < 3 && strcmp(sides[side], options->legend) != 0)
         side++;
     if (side == 3)
-        return true; /* off */
+        return NULL; /* off */
     scales *s = cli_new(1, sizeof *s);
+    *ok = s != NULL;
     if (!s)
-        return false;
+        return NULL;
+    *at = (legend_side)side;
     s->count = s->made = 0;
     while (s->count < more_count) {
         s->list[s->count] = more[s->count];
@@ -82,7 +86,39 @@ bool cli_legends_draw(const cli_options *options, const cli_scene *scene, const 
         add_object(s, scene->objects[i]);
     if (s->count && options->legend_title)
         s->list[0].title = options->legend_title;
-    bool ok = legend_draw(p, (legend_side)side, s->list, s->count) || cli_fail("out of memory");
+    return s;
+}
+
+bool cli_legends_draw(const cli_options *options, const cli_scene *scene, const legend *more,
+                      uint32_t more_count, picture *p) {
+    legend_side side = LEGEND_LEFT;
+    bool ok;
+    scales *s = collect(options, scene, more, more_count, &side, &ok);
+    if (s)
+        ok = legend_draw(p, side, s->list, s->count) || cli_fail("out of memory");
+    free(s);
+    return ok;
+}
+
+void cli_legends_warn(const char *name, legend_side side, const legend *list, uint32_t count,
+                      const uint32_t size[2]) {
+    uint32_t room = legend_room(size[0], size[1], side, list, count);
+    char text[128];
+    if (room == count)
+        return;
+    snprintf(text, sizeof text,
+             "no room for %u of %u legends in %ux%u pixels; a larger --size has it",
+             (unsigned)(count - room), (unsigned)count, (unsigned)size[0], (unsigned)size[1]);
+    cli_warn(name, text);
+}
+
+bool cli_legends_check(const cli_options *options, const cli_scene *scene, const legend *more,
+                       uint32_t more_count, const uint32_t size[2]) {
+    legend_side side = LEGEND_LEFT;
+    bool ok;
+    scales *s = collect(options, scene, more, more_count, &side, &ok);
+    if (s && options->out)
+        cli_legends_warn(options->out, side, s->list, s->count, size);
     free(s);
     return ok;
 }

@@ -11,4 +11,12 @@
 bool cli_legends_draw(const cli_options *options, const cli_scene *scene, const legend *more,
                       uint32_t more_count, picture *p);
 
+/* Warns once, before any picture is drawn, where pictures of this size have no room for them all.
+ * False: reported. */
+bool cli_legends_check(const cli_options *options, const cli_scene *scene, const legend *more,
+                       uint32_t more_count, const uint32_t size[2]);
+/* The warning alone, of a picture's name. */
+void cli_legends_warn(const char *name, legend_side side, const legend *list, uint32_t count,
+                      const uint32_t size[2]);
+
 #endif

@@ -10,9 +10,32 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Few enough to see the wall behind them. */
-#define EMBEDDED_LINES 150
-#define EMBEDDED_WIDTH 1
+/* Embedded surfaces that have a flow, with lines few enough to see the wall behind them. */
+typedef struct embedded {
+    const char *surface, *lines; /* scenes */
+    uint32_t line_count;
+    float width; /* mm */
+} embedded;
+static const embedded embedded_flows[] = {{"aorta", "flow", 150, 1},
+                                          {"aneurysm", "aneurysm", 160, 0.3f}};
+
+static bool no_lines(const cli_options *options) {
+    return options->surface.lines && strcmp(options->surface.lines, "none") == 0;
+}
+
+static const embedded *find_flow(const cli_options *options) {
+    const char *name = options->scene ? options->scene : "aorta";
+    bool any = options->file_count == 0 && !no_lines(options);
+    for (size_t i = 0; any && i < sizeof embedded_flows / sizeof *embedded_flows; i++) {
+        if (strcmp(name, embedded_flows[i].surface) == 0)
+            return &embedded_flows[i];
+    }
+    return NULL;
+}
+
+bool cli_wall_has_lines(const cli_options *options) {
+    return find_flow(options) || (options->surface.lines && !no_lines(options));
+}
 
 /* One line per failure; warnings are in the mesh. */
 static void on_log(void *user, vsf_log_item item, lao_result result, const char *text) {
@@ -21,6 +44,23 @@ static void on_log(void *user, vsf_log_item item, lao_result result, const char 
         cli_go_on();
     else if (result != LAO_OK)
         cli_fail("%s: %s", wall->name, text);
+}
+
+/* ---- memory ------------------------------------------------------------------------------ */
+
+static void *allocate(void *user, size_t size) {
+    (void)user;
+    return malloc(size);
+}
+
+/* Distances that are still shown while others are measured go when those are shown. */
+static void release(void *user, void *memory, size_t size) {
+    cli_wall *wall = user;
+    const char *values = wall->near.values, *first = memory;
+    if (wall->lit && values >= first && values < first + size)
+        wall->kept = memory;
+    else
+        free(memory);
 }
 
 /* ---- lines ------------------------------------------------------------------------------ */
@@ -92,7 +132,7 @@ static bool make_times(cli_scene *scene, cli_set *set) {
 
 /* What the options ask for as `render` would load it: the lines of a file, of a velocity volume
  * with its mask, which becomes the mesh, or of the embedded flow. */
-static bool load_flow(cli_wall *wall, bool volume) {
+static bool load_flow(cli_wall *wall, bool volume, const embedded *flow) {
     cli_options options = *wall->options;
     cli_source *source = &wall->line_source;
     *source = *wall->source;
@@ -107,12 +147,12 @@ static bool load_flow(cli_wall *wall, bool volume) {
     options.file_count = source->path ? 1 : 0;
     options.time = NAN; /* times may be made below */
     options.frames = 0;
-    options.scene = "flow";
-    options.lines = EMBEDDED_LINES;
+    options.scene = flow ? flow->lines : NULL;
+    options.lines = flow ? flow->line_count : 0;
     if (!source->path && !source->color)
-        source->color = "speed";
+        source->color = "speed"; /* the embedded flow's */
     if (!source->path && !(source->settings.set & LAO_SET(width))) {
-        source->settings.width = EMBEDDED_WIDTH;
+        source->settings.width = flow->width;
         source->settings.set |= LAO_SET(width);
     }
     options.all = *source;
@@ -135,10 +175,9 @@ static void start_lines(cli_scene *scene, cli_set *set) {
  * hide what is lit. */
 static bool load_lines(cli_wall *wall) {
     bool volume = wall->source->path && io_is_volume(wall->source->path);
-    bool flow = !wall->source->path && strcmp(wall->name, "aorta") == 0;
-    if (!wall->options->surface.lines && !flow && !volume)
+    if (!volume && !cli_wall_has_lines(wall->options))
         return true;
-    if (!load_flow(wall, volume))
+    if (!load_flow(wall, volume, find_flow(wall->options)))
         return false;
     cli_set *set = &wall->scene.sets[0];
     lao_settings *s = &set->settings;
@@ -217,6 +256,17 @@ static bool find_brightness(cli_wall *wall) {
 /* A table larger than this is kept in half floats. */
 #define MOST_DISTANCES 250000000.0
 
+/* The lines' settings that go by the distances. */
+static void take_beta(cli_wall *wall) {
+    lao_settings *s = &wall->scene.sets[1].settings;
+    s->highlight_beta = (float)wall->near.beta;
+    s->set |= LAO_SET(highlight_beta);
+    if (wall->trails) {
+        s->trail_length = (float)wall->near.reach;
+        s->set |= LAO_SET(trail_length);
+    }
+}
+
 static bool measure_distances(cli_wall *wall) {
     if (wall->scene.count < 2)
         return true;
@@ -246,13 +296,37 @@ static bool measure_distances(cli_wall *wall) {
     wall->progress = (cli_progress){"measuring distances to", set->name, -1};
     wall->lit = vsf_near_make(&wall->host, &desc, &wall->near) == LAO_OK;
     cli_progress_end(&wall->progress);
-    s->highlight_beta = (float)wall->near.beta;
-    s->set |= LAO_SET(highlight_beta);
-    if (!(s->set & LAO_SET(trail_length))) {
-        s->trail_length = (float)wall->near.reach;
-        s->set |= LAO_SET(trail_length);
-    }
+    wall->trails = !(s->set & LAO_SET(trail_length));
+    take_beta(wall);
     return wall->lit && cli_go_on();
+}
+
+bool cli_wall_measure(cli_wall *wall, double beta) {
+    cli_threads *threads = cli_threads_start();
+    cli_progress progress = {"measuring distances to", wall->scene.sets[1].name, -1};
+    vsf_host host = wall->host;
+    vsf_near next = wall->near;
+    if (!threads)
+        return false;
+    host.job = cli_threads_job(threads, &progress);
+    bool ok = vsf_near_update(&host, &next, beta) == LAO_OK;
+    if (ok)
+        wall->next = next;
+    cli_progress_end(&progress);
+    cli_threads_stop(threads);
+    return ok;
+}
+
+bool cli_wall_relight(cli_wall *wall) {
+    if (!wall->next.step_count)
+        return false;
+    wall->near = wall->next;
+    memset(&wall->next, 0, sizeof wall->next);
+    free(wall->kept);
+    wall->kept = NULL;
+    wall->object.step = VSF_NONE; /* what is uploaded is of the old ones */
+    take_beta(wall);
+    return true;
 }
 
 bool cli_wall_time(cli_wall *wall, double time, lao_object_desc *update) {
@@ -497,15 +571,25 @@ uint32_t cli_wall_scales(cli_wall *wall, colour_map maps[2], char titles[2][160]
     return count;
 }
 
-bool cli_wall_legends(void *user, picture *p) {
-    cli_wall *wall = user;
+/* The wall's scales, then those of the scene: drawn into p, or only checked against a size. */
+static bool with_legends(cli_wall *wall, picture *p, const uint32_t *size) {
     char titles[2][160];
     legend list[2];
     colour_map *maps = cli_new(2, sizeof *maps);
     uint32_t count = maps ? cli_wall_scales(wall, maps, titles, list) : 0;
-    bool ok = maps && cli_legends_draw(wall->options, &wall->scene, list, count, p);
+    bool ok = maps && (p ? cli_legends_draw(wall->options, &wall->scene, list, count, p)
+                         : cli_legends_check(wall->options, &wall->scene, list, count, size));
     free(maps);
     return ok;
+}
+
+bool cli_wall_legends(void *user, picture *p) {
+    return with_legends(user, p, NULL);
+}
+
+bool cli_wall_legends_check(cli_wall *wall, const cli_shot *shot) {
+    const uint32_t size[2] = {shot->width, shot->height};
+    return with_legends(wall, NULL, size);
 }
 
 /* ---- dumps and warnings ----------------------------------------------------------------- */
@@ -599,6 +683,7 @@ bool cli_wall_load(const cli_options *options, const cli_place *place, cli_wall 
     out->host.job = cli_threads_job(out->threads, &out->progress);
     out->host.log = on_log;
     out->host.user = out;
+    out->host.allocator = (lao_allocator){allocate, release, out};
     take_settings(out);
     bool ok = load_lines(out);
     out->placed = out->scene.count > 0 || (place && place->origin);
@@ -614,6 +699,8 @@ bool cli_wall_load(const cli_options *options, const cli_place *place, cli_wall 
 }
 
 void cli_wall_free(cli_wall *wall) {
+    cli_wall_relight(wall);
+    wall->lit = false; /* nothing is kept any more */
     cli_scene_free(&wall->scene);
     vsf_object_free(&wall->object);
     vsf_near_free(&wall->near);

@@ -27,7 +27,10 @@ typedef struct cli_wall {
     cli_scene scene; /* a set that has the object, and one of lines unless there are none */
     cli_source line_source;
     vsf_near near;
-    bool lit; /* `near` is there */
+    bool lit;      /* `near` is there */
+    vsf_near next; /* its successor, if it has a step_count; see cli_wall_measure */
+    void *kept;    /* owned; the memory of near.values, which `next` has no need of */
+    bool trails;   /* the length of the lines' trails is how far they are lit */
     vsf_object object;
     vsf_settings settings;
     double range[2];      /* of --value */
@@ -35,6 +38,10 @@ typedef struct cli_wall {
     uint32_t contours[2]; /* sets of the scene that show vsf_feature 0 and 1; 0: not yet there */
     colour_map map;       /* of --wall-colormap */
 } cli_wall;
+
+/* Do the options give lines: of a file, or of an embedded surface that has a flow? Volumes have
+ * their own. */
+bool cli_wall_has_lines(const cli_options *options);
 
 /* Reads or makes mesh and lines and all numbers that do not depend on the camera. place: (Optional)
  * among others in a scene. False: reported; free it in any case. */
@@ -48,6 +55,11 @@ bool cli_wall_mesh(cli_wall *wall);
 /* Shows a time (ms). Returns whether the object's distances changed; then `update` is for
  * lao_object_update. */
 bool cli_wall_time(cli_wall *wall, double time, lao_object_desc *update);
+/* Measures the distances for another highlight_beta (ms^2) beside all that shows the wall, which
+ * goes on with those that it has: in a thread of its own, one at a time. False: reported. */
+bool cli_wall_measure(cli_wall *wall, double beta);
+/* Shows what was measured, if there is something; what depends on it is to be shown anew. */
+bool cli_wall_relight(cli_wall *wall);
 /* What depends on the camera: --focus, and contours as further sets of lines, made anew by each
  * call. False: reported.
  */
@@ -60,6 +72,8 @@ void cli_wall_eye(const cli_shot *shot, float eye[4]);
 uint32_t cli_wall_scales(cli_wall *wall, colour_map maps[2], char titles[2][160], legend out[2]);
 /* A cli_picture_edit of a cli_wall: draws the legends that --legend asks for. */
 bool cli_wall_legends(void *user, picture *p);
+/* Warns where pictures of the shot's size have no room for all of them. False: reported. */
+bool cli_wall_legends_check(cli_wall *wall, const cli_shot *shot);
 /* The warning i of all about the mesh; false: there are fewer. */
 bool cli_wall_warning(const cli_wall *wall, uint32_t i, char *text, size_t size);
 /* A cli_planes_edit of a cli_wall: positions become absolute. */

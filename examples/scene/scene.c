@@ -19,6 +19,8 @@
       "24 fanning bundles, every line exactly 100 points, for benchmarks (5000 lines)")            \
     X(flow, 4000, 0.45f, true, 0.8f, -0.6f, -0.06f, 0, 0, 1,                                       \
       "pathlines through a phantom of 4D flow: a jet, a vortex in a bulge, a helix (4000 lines)")  \
+    X(aneurysm, 400, 0.2f, true, 0.25f, 0.96f, -0.12f, 0, 0, 1,                                    \
+      "pathlines through a cerebral artery and its aneurysm, in which a vortex turns (400 lines)") \
     X(stress, 24, 1.0f, false, 0, 0, -1, 0, 1, 0,                                                  \
       "degenerate lines: empty, one point, repeats, loops, hairpins, end-on (24 lines)")
 

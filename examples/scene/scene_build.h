@@ -46,6 +46,7 @@ void scene_build_helix(scene_builder *builder, uint32_t count);
 void scene_build_ball(scene_builder *builder, uint32_t count);
 void scene_build_bundle(scene_builder *builder, uint32_t count);
 void scene_build_flow(scene_builder *builder, uint32_t count);
+void scene_build_aneurysm(scene_builder *builder, uint32_t count);
 void scene_build_stress(scene_builder *builder, uint32_t count);
 
 #endif

@@ -1,64 +1,18 @@
-/* Surfaces as unions of tubes, balls and ellipsoids that flow into each other (a polynomial smooth
- * minimum), sampled on a lattice and meshed. */
+/* Surfaces of scene_shapes.h, sampled on a lattice and meshed. */
 #include "scene_surface.h"
+#include "flow_aneurysm.h"
 #include "flow_phantom.h"
-#include "scene_build.h"
+#include "scene_shapes.h"
 
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
-/* ---- distances */
-
-static double ball(vec3 p, vec3 centre, double radius) {
-    vec3 d = vec3_sub(p, centre);
-    return sqrt(vec3_dot(d, d)) - radius;
-}
-
-/* A tube from a to b, its radius from ra to rb: near enough to a distance for gentle tapers. */
-static double tube(vec3 p, vec3 a, vec3 b, double ra, double rb) {
-    vec3 d = vec3_sub(b, a), q = vec3_sub(p, a);
-    double u = vec3_dot(q, d) / vec3_dot(d, d);
-    u = u < 0 ? 0 : u > 1 ? 1 : u;
-    return ball(p, vec3_mad(a, d, u), ra + u * (rb - ra));
-}
-
-/* Near enough to a distance on the surface of an ellipsoid. */
-static double ellipsoid(vec3 p, vec3 centre, vec3 radii) {
-    vec3 d = vec3_sub(p, centre);
-    vec3 one = vec3_make(d.x / radii.x, d.y / radii.y, d.z / radii.z);
-    vec3 two = vec3_make(one.x / radii.x, one.y / radii.y, one.z / radii.z);
-    double k = sqrt(vec3_dot(one, one)), l = sqrt(vec3_dot(two, two));
-    return l > 1e-12 ? k * (k - 1) / l : -radii.x;
-}
-
-/* The lesser of two distances, blended where they differ by less than k; and the greater. */
-static double join(double a, double b, double k) {
-    double h = k - fabs(a - b);
-    return (a < b ? a : b) - (h > 0 ? h * h / (4 * k) : 0);
-}
-static double cut(double a, double b, double k) {
-    return -join(-a, -b, k);
-}
-
 /* ---- the surfaces */
 
-/* A cerebral artery that bends and divides, with a sac on the outer side of the bend and a bleb on
- * the sac. */
 static double aneurysm(vec3 p) {
-    vec3 last = vec3_make(0, 0, 0);
-    double wall = 1e9;
-    for (int i = 0; i <= 48; i++) { /* the parent, a bend out of the plane */
-        double t = i / 48.0, a = 3.4 * t - 0.5;
-        vec3 next = vec3_make(-9 * cos(a) - 5, 3.0 * sin(2.2 * t), 9 * sin(a) - 11.5 * (1 - t));
-        double piece = i ? tube(p, last, next, 2.1 - 0.25 * (t - 1 / 48.0), 2.1 - 0.25 * t) : wall;
-        wall = piece < wall ? piece : wall;
-        last = next;
-    }
-    wall = join(wall, tube(p, last, vec3_make(9, 7, -13), 1.8, 1.3), 1.2);
-    wall = join(wall, tube(p, last, vec3_make(14, -6, 1), 1.8, 1.4), 1.2);
-    wall = join(wall, ellipsoid(p, vec3_make(-4.5, 2, 11), vec3_make(5.6, 5, 5.2)), 2.4);
-    return join(wall, ball(p, vec3_make(-8.6, 0, 14.6), 1.9), 1.3); /* the bleb */
+    const double position[3] = {p.x, p.y, p.z};
+    return flow_aneurysm_wall(position);
 }
 
 /* The vessel of flow_phantom.h, whose pathlines are the scene `flow`, closed at its two ends. */
@@ -71,13 +25,17 @@ static double aorta(vec3 p) {
 
 /* Two lobes with a notch, a dent for the gallbladder and a dome under the diaphragm. */
 static double liver(vec3 p) {
-    double wall = ellipsoid(p, vec3_make(30, 0, 0), vec3_make(62, 48, 56));
-    wall = join(wall, ellipsoid(p, vec3_make(-42, 14, 14), vec3_make(58, 30, 30)), 26);
-    wall = join(wall, ellipsoid(p, vec3_make(46, -8, -42), vec3_make(34, 30, 32)), 24);
-    wall = cut(wall, -ellipsoid(p, vec3_make(-6, 22, -34), vec3_make(12, 60, 34)), 12); /* notch */
-    wall = cut(wall, -tube(p, vec3_make(16, 30, -60), vec3_make(24, 4, -26), 13, 9), 10);
-    wall = cut(wall, -tube(p, vec3_make(-20, -30, 10), vec3_make(24, -56, 2), 12, 12), 12);
-    return cut(wall, -ball(p, vec3_make(-30, -40, -78), 62), 16); /* the stomach's side */
+    double wall = shape_ellipsoid(p, vec3_make(30, 0, 0), vec3_make(62, 48, 56));
+    wall = shape_join(wall, shape_ellipsoid(p, vec3_make(-42, 14, 14), vec3_make(58, 30, 30)), 26);
+    wall = shape_join(wall, shape_ellipsoid(p, vec3_make(46, -8, -42), vec3_make(34, 30, 32)), 24);
+    wall = shape_cut(wall, -shape_ellipsoid(p, vec3_make(-6, 22, -34), vec3_make(12, 60, 34)),
+                     12); /* notch */
+    wall =
+        shape_cut(wall, -shape_tube(p, vec3_make(16, 30, -60), vec3_make(24, 4, -26), 13, 9), 10);
+    wall =
+        shape_cut(wall, -shape_tube(p, vec3_make(-20, -30, 10), vec3_make(24, -56, 2), 12, 12), 12);
+    return shape_cut(wall, -shape_ball(p, vec3_make(-30, -40, -78), 62),
+                     16); /* the stomach's side */
 }
 
 /* What of a portal vein lies in it. */
@@ -96,8 +54,8 @@ static double portal_vein(vec3 p) {
     for (size_t i = 0; i < sizeof pieces / sizeof *pieces; i++) {
         const double *a = pieces[i];
         double piece =
-            tube(p, vec3_make(a[0], a[1], a[2]), vec3_make(a[3], a[4], a[5]), a[6], a[7]);
-        wall = i ? join(wall, piece, 2.5) : piece;
+            shape_tube(p, vec3_make(a[0], a[1], a[2]), vec3_make(a[3], a[4], a[5]), a[6], a[7]);
+        wall = i ? shape_join(wall, piece, 2.5) : piece;
     }
     return wall;
 }
@@ -105,14 +63,14 @@ static double portal_vein(vec3 p) {
 /* The upper half of a thigh bone: head, neck, two trochanters, a shaft that bends, and the fovea.
  */
 static double bone(vec3 p) {
-    double wall = tube(p, vec3_make(0, 0, -70), vec3_make(-1, 4, -20), 10, 10.5);
-    wall = join(wall, tube(p, vec3_make(-1, 4, -20), vec3_make(0, 0, 28), 10.5, 14), 6);
-    wall = join(wall, tube(p, vec3_make(0, 0, 26), vec3_make(28, 3, 50), 12, 9.5), 12);
-    wall = join(wall, ball(p, vec3_make(34, 4, 55), 16.5), 5);
-    wall = join(wall, ellipsoid(p, vec3_make(-9, -4, 40), vec3_make(10, 13, 16)), 10);
-    wall = join(wall, ball(p, vec3_make(12, -9, 8), 6.5), 7);
-    wall = cut(wall, -tube(p, vec3_make(2, -22, 40), vec3_make(-2, -10, 44), 5, 3), 6);
-    return cut(wall, -ball(p, vec3_make(49, 4, 64), 3.2), 1.5);
+    double wall = shape_tube(p, vec3_make(0, 0, -70), vec3_make(-1, 4, -20), 10, 10.5);
+    wall = shape_join(wall, shape_tube(p, vec3_make(-1, 4, -20), vec3_make(0, 0, 28), 10.5, 14), 6);
+    wall = shape_join(wall, shape_tube(p, vec3_make(0, 0, 26), vec3_make(28, 3, 50), 12, 9.5), 12);
+    wall = shape_join(wall, shape_ball(p, vec3_make(34, 4, 55), 16.5), 5);
+    wall = shape_join(wall, shape_ellipsoid(p, vec3_make(-9, -4, 40), vec3_make(10, 13, 16)), 10);
+    wall = shape_join(wall, shape_ball(p, vec3_make(12, -9, 8), 6.5), 7);
+    wall = shape_cut(wall, -shape_tube(p, vec3_make(2, -22, 40), vec3_make(-2, -10, 44), 5, 3), 6);
+    return shape_cut(wall, -shape_ball(p, vec3_make(49, 4, 64), 3.2), 1.5);
 }
 
 typedef struct row {

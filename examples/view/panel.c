@@ -89,8 +89,8 @@ static void describe(view *v) {
         const cli_set *set = &scene->sets[i];
         if (set->tree) {
             const sdv_tree_info *info = &set->tree->vessel.tree.info;
-            snprintf(text, sizeof text, "%s: tree of %u nodes, %u segments, %u roots", set->name,
-                     info->nodes, info->segments, info->roots);
+            snprintf(text, sizeof text, "%s: tree of %u nodes, %u segments, %u root%s", set->name,
+                     info->nodes, info->segments, info->roots, info->roots == 1 ? "" : "s");
         } else if (set->wall) {
             snprintf(text, sizeof text, "%s: surface of %u vertices, %u triangles", set->name,
                      set->wall->mesh.vertex_count, set->wall->mesh.triangle_count);
@@ -105,6 +105,22 @@ static void describe(view *v) {
             stage_remove(v, set->source->path);
         ui_group_end();
     }
+}
+
+static void list_keys(void) {
+    const char *key, *help;
+    ui_text_wrapped("Drag: turn. Shift or middle button: move. Right button or wheel: nearer, "
+                    "farther. Rest: what is there? Click: keep it, and do something with it.");
+    if (!ui_table("keys", 2))
+        return;
+    for (uint32_t i = 0; i < input_keys(UINT32_MAX, &key, &help); i++) {
+        input_keys(i, &key, &help);
+        ui_cell();
+        ui_text(key);
+        ui_cell();
+        ui_text_wrapped(help);
+    }
+    ui_table_end();
 }
 
 static void scene_tab(view *v) {
@@ -127,21 +143,8 @@ static void scene_tab(view *v) {
         open_line(v);
     if (ui_section("Scenes made by code", true))
         embedded(v);
-    if (ui_section("Pointer and keys", false)) {
-        const char *key, *help;
-        ui_text_wrapped("Drag: turn. Shift or middle button: move. Right button or wheel: nearer, "
-                        "farther. Click: what is there?");
-        if (ui_table("keys", 2)) {
-            for (uint32_t i = 0; i < input_keys(UINT32_MAX, &key, &help); i++) {
-                input_keys(i, &key, &help);
-                ui_cell();
-                ui_text(key);
-                ui_cell();
-                ui_text_wrapped(help);
-            }
-            ui_table_end();
-        }
-    }
+    if (ui_section("Pointer and keys (F1)", false))
+        list_keys();
 }
 
 /* ---- view -------------------------------------------------------------------------------- */
@@ -301,49 +304,48 @@ static void picked_text(view *v, window_rect place) {
     ui_panel_end();
 }
 
-static void mark_picked(const view *v) {
-    float at[2], r = 7 * ui_scale();
-    if (v->picked.kind == PICKED_NOTHING || !stage_place(v, v->picked.at, at) ||
-        at[0] < (float)v->picture.x || at[1] > (float)(v->picture.y + v->picture.height))
-        return;
-    for (int i = 0; i < 4; i++) {
-        float x = i < 2 ? (i ? r : -r) : 0, y = i < 2 ? 0 : (i > 2 ? r : -r);
-        ui_draw_line(true, at[0] + x, at[1] + y, at[0] + 0.3f * x, at[1] + 0.3f * y, 0xff1030f0,
-                     2 * ui_scale());
-    }
+static bool has_document(const view *v) {
+    return v->open;
 }
+
+static bool has_tree(const view *v) {
+    return v->open && picked_tree(v->doc->scene, &v->picked);
+}
+
+static const struct tab {
+    const char *name;
+    void (*draw)(view *v);
+    bool (*there)(const view *v); /* NULL: always */
+} tabs[] = {{"Scene", scene_tab, NULL},
+            {"Look", panel_settings, has_document},
+            {"View", view_tab, has_document},
+            {"Save", picture_tab, has_document},
+            {"Compare", panel_compare, has_document},
+            {"Tree", panel_tree, has_tree}};
 
 static void left(view *v, window_rect place) {
     ui_panel("Panel", place);
     ui_disable(v->film.running);
     if (ui_tabs("tabs")) {
-        if (ui_tab("Scene")) {
-            scene_tab(v);
-            ui_tab_end();
-        }
-        if (v->open && ui_tab("Look")) {
-            panel_settings(v);
-            ui_tab_end();
-        }
-        if (v->open && ui_tab("View")) {
-            view_tab(v);
-            ui_tab_end();
-        }
-        if (v->open && ui_tab("Save")) {
-            picture_tab(v);
-            ui_tab_end();
-        }
-        if (v->open && ui_tab("Compare")) {
-            panel_compare(v);
-            ui_tab_end();
-        }
-        if (v->open && picked_tree(v->doc, &v->picked) && ui_tab("Tree")) {
-            panel_tree(v);
-            ui_tab_end();
+        for (size_t i = 0; i < sizeof tabs / sizeof *tabs; i++) {
+            if ((!tabs[i].there || tabs[i].there(v)) && ui_tab(tabs[i].name)) {
+                tabs[i].draw(v);
+                ui_tab_end();
+            }
         }
         ui_tabs_end();
     }
     ui_disable_end();
+    ui_panel_end();
+}
+
+static void keys_dialog(view *v) {
+    if (!v->keys)
+        return;
+    if (ui_dialog("Pointer and keys", v->picture, &v->keys)) {
+        list_keys();
+        v->keys = !ui_button("Close##keys") && v->keys;
+    }
     ui_panel_end();
 }
 
@@ -371,29 +373,47 @@ static void said(view *v) {
         v->seen = count;
 }
 
-static void status(const view *v, window_rect place) {
-    char text[256];
-    char moving[64];
-    uint32_t samples = 1;
-    snprintf(moving, sizeof moving, ", drawn at %.0f %% while it moves",
-             100 * (double)v->steady.scale);
-    bool small = v->steady.on && v->steady.moving;
-    if (v->open && !small)
-        samples = (uint32_t)lao_settings_filled(&v->doc->scene->sets[0].settings).supersampling;
-    ui_panel("Status", place);
-    if (v->compare)
-        snprintf(text, sizeof text, "%s   two pictures of %d x %d", v->window.backend->name,
-                 v->picture.width, v->picture.height);
+/* "1 sample per pixel", or how many pixels there are while the view moves. */
+static void tell_samples(const view *v, char text[64]) {
+    const lao_settings settings = lao_settings_filled(&v->doc->scene->sets[0].settings);
+    int samples = (int)(settings.supersampling * settings.supersampling);
+    if (v->steady.on && v->steady.moving)
+        snprintf(text, 64, "drawn at %.0f %% while it moves", 100 * (double)v->steady.scale);
     else
-        snprintf(text, sizeof text, "%s   %d x %d%s, %u sample%s per pixel   last frame %.0f ms",
-                 v->window.backend->name, v->picture.width, v->picture.height, small ? moving : "",
-                 samples * samples, samples > 1 ? "s" : "", v->frame_ms);
-    if (v->open && player_timed(v)) {
+        snprintf(text, 64, "%d sample%s per pixel", samples, samples > 1 ? "s" : "");
+}
+
+/* The first of these that fit; empty ones are passed over. */
+static void status_line(const char *const *parts, int count, float width) {
+    char text[256] = "";
+    for (int i = 0; i < count; i++) {
         size_t used = strlen(text);
-        snprintf(text + used, sizeof text - used, "   time %.0f ms, %.3g ms in a second",
-                 (double)v->shot.time, v->player.speed);
+        if (*parts[i])
+            snprintf(text + used, sizeof text - used, "%s%s", used ? "   " : "", parts[i]);
+        if (used && ui_text_width(text) > width)
+            text[used] = '\0';
     }
-    ui_text(v->open ? text : "nothing is open");
+    ui_text(text);
+}
+
+static void status(const view *v, window_rect place) {
+    char size[32] = "", samples[64] = "", time[64] = "", frame[32] = "";
+    const char *parts[] = {v->next ? "building shaders ..." : "nothing is open", size, time,
+                           samples, frame};
+    float width;
+    if (v->open && !v->next) {
+        parts[0] = v->compare ? "two pictures" : v->window.backend->title;
+        snprintf(size, sizeof size, "%d x %d px", v->picture.width, v->picture.height);
+        tell_samples(v, samples);
+    }
+    if (player_timed(v))
+        snprintf(time, sizeof time, "%.4g ms, plays %.3g ms per second", (double)v->shot.time,
+                 v->player.speed);
+    if (v->open && !v->compare && v->frame_ms > 0)
+        snprintf(frame, sizeof frame, "last frame %.0f ms", v->frame_ms);
+    ui_panel("Status", place);
+    ui_width_left(&width);
+    status_line(parts, sizeof parts / sizeof *parts, width);
     ui_panel_end();
 }
 
@@ -415,12 +435,13 @@ void panel_draw(view *v) {
     }
     if (memcmp(&before, &v->picture, sizeof before) != 0)
         v->dirty = true;
-    mark_picked(v);
+    if (v->open)
+        stage_answer(v);
     input_hover(v);
-    tree_marks(v);
-    hands_marks(v);
+    marks_draw(v);
     if (v->compare)
         compare_marks(v);
     film_panel(v);
+    keys_dialog(v);
     said(v);
 }

@@ -34,6 +34,15 @@ static uint32_t nearest(const ui_area *a, const cli_tree *tree) {
     return best;
 }
 
+/* As the end of the branch has it in the picture. */
+static uint32_t color_at(const cli_tree *tree, uint32_t branch) {
+    uint32_t cone = tree->vessel.tree.parent_segments[tree->reduced.nodes[branch]];
+    if (!tree->colors || cone >= tree->grid.cone_count)
+        return color_of(tree->layout.h[branch], tree->layout.s[branch]);
+    const uint8_t *c = tree->colors + 8 * (size_t)cone + 4;
+    return 0xff000000u | (uint32_t)c[2] << 16 | (uint32_t)c[1] << 8 | c[0];
+}
+
 static void draw(const ui_area *a, const cli_tree *tree) {
     const sdv_reduced *reduced = &tree->reduced;
     for (uint32_t k = 0; k < reduced->node_count; k++) {
@@ -43,14 +52,13 @@ static void draw(const ui_area *a, const cli_tree *tree) {
             continue;
         place_of(a, &tree->layout, parent, from);
         place_of(a, &tree->layout, i, to);
-        ui_draw_line(false, from[0], from[1], to[0], to[1],
-                     color_of(tree->layout.h[i], tree->layout.s[i]), 1.5f * ui_scale());
+        ui_draw_line(false, from[0], from[1], to[0], to[1], color_at(tree, i), 1.5f * ui_scale());
     }
 }
 
 /* The branch (reduced node) that a node of the tree lies on; SDV_NONE: none, or of another tree. */
 static uint32_t branch_of(const cli_tree *tree, const view *v, const picked *p) {
-    return tree && picked_on(v->doc, p) == tree ? tree->reduced.owners[p->point] : SDV_NONE;
+    return tree && picked_on(v->doc->scene, p) == tree ? tree->reduced.owners[p->point] : SDV_NONE;
 }
 
 /* In the flat tree: the edge of a branch, and its end. */
@@ -67,62 +75,10 @@ static void mark_flat(const ui_area *a, const cli_tree *tree, uint32_t branch, u
     ui_draw_line(false, from[0], from[1], to[0], to[1], color, 3 * ui_scale());
 }
 
-/* In the picture: the middle line of a branch. */
-static void mark_solid(const view *v, const cli_tree *tree, uint32_t branch, uint32_t color) {
-    const double *o = tree->vessel.origin;
-    for (uint32_t i = 0; branch != SDV_NONE && i < tree->vessel.tree.node_count; i++) {
-        uint32_t parent = tree->vessel.tree.parents[i];
-        const lao_v4 *n = &tree->vessel.tree.nodes[i], *p;
-        float from[2], to[2];
-        if (tree->reduced.owners[i] != branch || parent == SDV_NONE)
-            continue;
-        p = &tree->vessel.tree.nodes[parent];
-        const double a[3] = {(double)p->x + o[0], (double)p->y + o[1], (double)p->z + o[2]};
-        const double b[3] = {(double)n->x + o[0], (double)n->y + o[1], (double)n->z + o[2]};
-        if (stage_place(v, a, from) && stage_place(v, b, to))
-            ui_draw_line(true, from[0], from[1], to[0], to[1], color, 2.5f * ui_scale());
-    }
-}
-
 /* The tree that is laid out, if it has branches, or NULL. */
 static const cli_tree *shown_tree(const view *v) {
-    const cli_tree *tree = v->open ? picked_tree(v->doc, &v->picked) : NULL;
+    const cli_tree *tree = v->open ? picked_tree(v->doc->scene, &v->picked) : NULL;
     return tree && tree->reduced.node_count > 0 ? tree : NULL;
-}
-
-void tree_hover(view *v, const picked *at) {
-    const cli_tree *tree = shown_tree(v);
-    uint32_t before = tree ? branch_of(tree, v, &v->hovered) : SDV_NONE;
-    v->hovered = *at;
-    uint32_t now = tree ? branch_of(tree, v, at) : SDV_NONE;
-    if (now != before && now != SDV_NONE)
-        trace(v, "hovers %u", tree->reduced.nodes[now]);
-}
-
-/* Beside the pointer: what it is on. */
-static void tell_hovered(const view *v) {
-    const cli_tree *tree = picked_on(v->doc, &v->hovered);
-    uint32_t node = v->hovered.point, branch = branch_of(tree, v, &v->hovered);
-    char text[96], near[48] = "";
-    if (tree->distances && branch != SDV_NONE)
-        snprintf(near, sizeof near, ", %.3g mm from the target", (double)tree->distances[branch]);
-    snprintf(text, sizeof text, "node %u, radius %.3g mm%s", node,
-             (double)tree->vessel.tree.nodes[node].w, near);
-    float s = ui_scale(), wide = ui_text_width(text);
-    float right = (float)(v->picture.x + v->picture.width) - wide - 6 * s;
-    float x = fminf((float)v->pointer.x + 14 * s, right), y = (float)v->pointer.y + 14 * s;
-    ui_draw_box(true, x - 4 * s, y - 2 * s, x + wide + 4 * s, y + ui_text_height(), 0xd0202020);
-    ui_draw_text(true, x, y, 0xffffffff, text);
-}
-
-void tree_marks(const view *v) {
-    const cli_tree *tree = shown_tree(v);
-    if (!tree || v->picture.width < 1)
-        return;
-    mark_solid(v, tree, branch_of(tree, v, &v->picked), 0xff1030f0);
-    mark_solid(v, tree, branch_of(tree, v, &v->hovered), 0xffffffff);
-    if (picked_on(v->doc, &v->hovered) && !v->hovered_flat && v->pointer.button < 0)
-        tell_hovered(v);
 }
 
 void panel_tree(view *v) {
@@ -144,8 +100,8 @@ void panel_tree(view *v) {
     uint32_t over = a.hovered ? nearest(&a, tree) : SDV_NONE;
     if (over != SDV_NONE) {
         uint32_t node = tree->reduced.nodes[over];
-        pick_node(v->doc, tree, node, &found);
-        tree_hover(v, &found);
+        pick_node(v->doc->scene, tree, node, &found);
+        marks_hover(v, &found);
         snprintf(text, sizeof text, "node %u", node);
         ui_help(text);
         if (a.pressed && v->picked.point != node) {

@@ -100,11 +100,6 @@ static void text_breaks_between_words(void **state) {
 
 /* ---- legends ---------------------------------------------------------------------------- */
 
-static bool near(const uint8_t *pixel, const double rgb[3]) {
-    return abs(pixel[0] - colour_byte(rgb[0])) <= 2 && abs(pixel[1] - colour_byte(rgb[1])) <= 2 &&
-           abs(pixel[2] - colour_byte(rgb[2])) <= 2;
-}
-
 /* The longest run of pixels along a column or row whose colours run through the map from one end to
  * the other: the bar. Returns its length. */
 static uint32_t find_bar(const picture *p, const colour_map *map, bool upright) {
@@ -117,11 +112,10 @@ static uint32_t find_bar(const picture *p, const colour_map *map, bool upright) 
             uint32_t x = upright ? line : i, y = upright ? length - 1 - i : line;
             const uint8_t *c = p->pixels + 4 * ((size_t)y * p->width + x);
             const double rgb[3] = {c[0] / 255.0, c[1] / 255.0, c[2] / 255.0};
-            double distance, at = colour_map_find(map, rgb, &distance), end[3];
+            double distance, at = colour_map_find(map, rgb, &distance);
             run = distance < 0.01 && at >= before - 0.01 ? run + 1 : 0;
             before = run ? at : -1;
-            colour_map_at(map, 1, end);
-            if (run > longest && near(c, end))
+            if (run > longest && at > 1 - 1.0 / run)
                 longest = run;
         }
     }
@@ -238,6 +232,42 @@ static void several_legends_do_not_touch(void **state) {
     }
 }
 
+/* In a picture of any size each legend that is drawn has a whole bar, none goes over the rim or the
+ * middle, and what has no room is left out whole. */
+static void legends_of_small_pictures_keep_apart(void **state) {
+    static const uint32_t sizes[][3] = {/* width, height, at least so many */
+                                        {640, 480, 3}, {320, 240, 2}, {240, 320, 2}, {200, 150, 1},
+                                        {120, 90, 0},  {60, 60, 0},   {20, 20, 0}};
+    colour_map maps[3];
+    (void)state;
+    assert_true(colour_map_make("heat", &maps[0]) && colour_map_make("viridis", &maps[1]) &&
+                colour_map_make("coolwarm", &maps[2]));
+    const legend three[3] = {{&maps[0], {0, 1}, "mm to flow"},
+                             {&maps[1], {0, 1.2}, "concave"},
+                             {&maps[2], {0, 1}, "speed (m/s)"}};
+    for (size_t i = 0; i < sizeof sizes / sizeof *sizes; i++) {
+        for (int side = 0; side < 3; side++) {
+            uint32_t room = legend_room(sizes[i][0], sizes[i][1], (legend_side)side, three, 3);
+            picture p = filled(sizes[i][0], sizes[i][1], 1);
+            int64_t box[4];
+            assert_in_range(room, sizes[i][2], 3);
+            assert_true(legend_draw(&p, (legend_side)side, three, 3));
+            changed(&p, box);
+            assert_true(room > 0 || box[0] > box[2]);
+            for (uint32_t m = 0; m < room; m++)
+                assert_true(find_bar(&p, &maps[m], side != LEGEND_BOTTOM) >= 20);
+            if (room > 0) { /* the middle of the picture stays free, and so does its rim */
+                assert_true(box[0] > 0 && box[1] > 0 && box[2] < (int64_t)p.width - 1 &&
+                            box[3] < (int64_t)p.height - 1);
+                assert_true(side == LEGEND_LEFT    ? box[2] < 0.62 * p.width
+                            : side == LEGEND_RIGHT ? box[0] > 0.38 * p.width
+                                                   : box[1] > 0.38 * p.height);
+            }
+            picture_free(&p);
+        }
+    }
+}
+
 static void strange_legends_are_drawn_too(void **state) {
     (void)state;
     colour_map map;
@@ -265,6 +295,7 @@ int main(void) {
         cmocka_unit_test(ticks_stand_at_their_values),
         cmocka_unit_test(legends_grow_with_the_picture),
         cmocka_unit_test(several_legends_do_not_touch),
+        cmocka_unit_test(legends_of_small_pictures_keep_apart),
         cmocka_unit_test(strange_legends_are_drawn_too),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -175,7 +175,7 @@ static float nearness_of(const scene *s, const vsf_object *object, uint32_t vert
                : vsf_near_x(vsf_near_mix(pair[0], pair[1], v.near_part), v.near_gamma);
 }
 
-/* What the passes of the mesh take from each vertex: place and measure, normal and nearness. */
+/* What the passes of the mesh take from each vertex beside its buffers: measure and nearness. */
 static void check_vertices(const scene *shown, const subject *s, const render_result *result) {
     const render_image *measures = need(result, "surface_measure", 0);
     const render_image *nearnesses = need(result, "surface_nearness", 0);
@@ -184,16 +184,12 @@ static void check_vertices(const scene *shown, const subject *s, const render_re
     float *measure = calloc(s->mesh.vertex_count, sizeof *measure);
     assert_non_null(measure);
     assert_int_equal(vsf_measure(NULL, &s->object.buffers, at, 0, measure), LAO_OK);
-    assert_int_equal(measures->format, LAO_FORMAT_RGBA32F);
+    assert_int_equal(measures->format, LAO_FORMAT_R32F);
     assert_true((size_t)measures->width * measures->height >= s->mesh.vertex_count);
     for (uint32_t i = 0; i < s->mesh.vertex_count; i++) {
-        float wanted[2][4], near = nearness_of(shown, &s->object, i);
-        memcpy(wanted[0], s->object.buffers.points + 4 * (size_t)i, 12);
-        memcpy(wanted[1], s->object.buffers.normals + 4 * (size_t)i, 12);
-        wanted[0][3] = measure[i];
-        wanted[1][3] = near;
-        assert_memory_equal(measures->data + 16 * (size_t)i, wanted[0], 16);
-        assert_memory_equal(nearnesses->data + 16 * (size_t)i, wanted[1], 16);
+        float near = nearness_of(shown, &s->object, i);
+        assert_memory_equal(measures->data + 4 * (size_t)i, &measure[i], 4);
+        assert_memory_equal(nearnesses->data + 4 * (size_t)i, &near, 4);
     }
     free(measure);
 }
@@ -314,7 +310,8 @@ static lao_v4 halves(const render_image *image, uint32_t x, uint32_t y) {
 
 static lao_v4 over_pixel(const scene *s, const render_result *result, const render_image *before,
                          uint32_t x, uint32_t y) {
-    lao_v4 front = halves(need(result, "surface_over", 0), x, y), behind = texel_of(before, x, y);
+    lao_v4 front = halves(need(result, "surface_composed", 0), x, y),
+           behind = texel_of(before, x, y);
     return s->surface.blend > 0 ? vsf_add(front, behind) : vsf_over(front, behind);
 }
 
@@ -430,10 +427,11 @@ static void check_focus(const scene *s, const render_result *before, const rende
             for (uint32_t x = 0; x < WIDTH; x++) {
                 float z = texel_of(depth, x, y).x, sigma = sigma_of(s, z), weights = 1;
                 lao_v4 sum = texel_of(a, x, y), got = texel_of(b, x, y);
-                lao_int reach = vsf_reach(sigma, 96);
-                for (int64_t i = -reach; i <= reach; i++) {
+                lao_int reach = vsf_reach(sigma, VSF_BLUR_MOST);
+                for (int64_t k = 2; k < 2 * reach + 2; k++) { /* -1, 1, -2, 2, ... */
+                    int64_t i = k % 2 ? k / 2 : -k / 2;
                     int64_t u = x + (pass ? 0 : i), v = y + (pass ? i : 0);
-                    if (i == 0 || u < 0 || v < 0 || u >= WIDTH || v >= HEIGHT) {
+                    if (u < 0 || v < 0 || u >= WIDTH || v >= HEIGHT) {
                         continue;
                     }
                     float other = texel_of(depth, (uint32_t)u, (uint32_t)v).x;
@@ -621,7 +619,7 @@ static void layers(void **state) {
         s.surface.layers = (float)most;
         s.surface.shading = (float)shading;
         draw_both(&s, results);
-        const render_image *over = need(&results[0], "surface_over", 0);
+        const render_image *over = need(&results[0], "surface_composed", 0);
         const render_image *position = need(&results[0], "surface_position", 0);
         for (uint32_t y = 0; y < over->height; y++) {
             for (uint32_t x = 0; x < over->width; x++) {
