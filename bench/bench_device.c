@@ -1,6 +1,7 @@
 #include "bench_device.h"
 
 #include "bench_scene.h"
+#include "bench_host.h"
 
 #ifdef LINEAO_HAVE_GL
 #include "host_gl.h"
@@ -10,13 +11,10 @@
 #endif
 
 #include <string.h>
-#include <time.h>
 
 static double now(void *user) {
-    struct timespec t;
     (void)user;
-    clock_gettime(CLOCK_MONOTONIC, &t);
-    return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
+    return bench_now();
 }
 
 static void on_log(void *user, lao_log_item item, lao_result result, const char *text) {
@@ -137,8 +135,8 @@ static bool draw(bench_device *device, lao_context *context, const lao_frame *fr
 
 bool bench_device_frame(bench_device *device, lao_context *context, const lao_frame *frame,
                         double *milliseconds) {
-    double start = now(NULL);
+    double start = bench_now();
     bool ok = draw(device, context, frame);
-    *milliseconds = 1e3 * (now(NULL) - start);
+    *milliseconds = 1e3 * (bench_now() - start);
     return ok;
 }

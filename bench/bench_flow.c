@@ -1,48 +1,16 @@
 #include "bench_flow.h"
 
 #include "bench_scene.h"
+#include "bench_host.h"
 #include "flow_phantom.h"
 
-#include <pthread.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <time.h>
 
 enum { ROUNDS = 3 };
 
-/* ---- what the host lends: threads, and an allocator that counts ----------------------------- */
-
-typedef struct flow_work {
-    void (*fn)(void *arg, uint32_t index);
-    void *arg;
-    uint32_t next, count;
-    pthread_mutex_t lock;
-} flow_work;
-
-static void *flow_worker(void *argument) {
-    flow_work *work = argument;
-    for (;;) {
-        pthread_mutex_lock(&work->lock);
-        uint32_t index = work->next < work->count ? work->next++ : UINT32_MAX;
-        pthread_mutex_unlock(&work->lock);
-        if (index == UINT32_MAX)
-            return NULL;
-        work->fn(work->arg, index);
-    }
-}
-
-/* On two threads: this one and another. */
-static void run_on_two(void *user, uint32_t count, void (*fn)(void *, uint32_t), void *arg) {
-    flow_work work = {fn, arg, 0, count, PTHREAD_MUTEX_INITIALIZER};
-    pthread_t thread;
-    bool two = pthread_create(&thread, NULL, flow_worker, &work) == 0;
-    (void)user;
-    flow_worker(&work);
-    if (two)
-        pthread_join(thread, NULL);
-    pthread_mutex_destroy(&work.lock);
-}
+/* ---- an allocator that counts ---------------------------------------------------------------- */
 
 typedef struct flow_memory {
     size_t live, peak;
@@ -71,12 +39,6 @@ typedef struct flow_row {
     size_t result, peak; /* bytes */
 } flow_row;
 
-static double now(void) {
-    struct timespec t;
-    clock_gettime(CLOCK_MONOTONIC, &t);
-    return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
-}
-
 static bool measure(flow_row *row, const flow4d_field *field, uint32_t line_count) {
     flow_memory memory = {0, 0};
     flow4d_host host;
@@ -87,12 +49,12 @@ static bool measure(flow_row *row, const flow4d_field *field, uint32_t line_coun
     host.allocator.allocate = flow_allocate;
     host.allocator.release = flow_release;
     host.allocator.user = &memory;
-    host.job.run = row->threads == 2 ? run_on_two : NULL;
+    host.job.run = row->threads == 2 ? bench_run_on_two : NULL;
     settings.line_count = line_count;
     settings.method = strcmp(row->method, "rk4") == 0 ? FLOW4D_RK4 : FLOW4D_DOPRI;
-    double start = now();
+    double start = bench_now();
     lao_result result = flow4d_trace(&host, field, &settings, &lines);
-    double seconds = now() - start;
+    double seconds = bench_now() - start;
     if (result != LAO_OK)
         return bench_fail("flow4d_trace: %s", lao_result_text(result));
     row->points = lines.point_count;

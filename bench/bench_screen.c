@@ -3,6 +3,7 @@
 #include "bench_device.h"
 #include "bench_modules.h"
 #include "bench_scene.h"
+#include "bench_host.h"
 #include "scene_tree.h"
 #include "sdfvessel.h"
 
@@ -10,17 +11,10 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <time.h>
 
 enum { ROUNDS = 4, MOST_PASSES = 64, MOST_IMAGES = 64, MOST_TIMINGS = 512, SWEEPS = 4 };
 
 /* Seconds of processor time: what fills is measured beside others that use one thread. */
-static double now(void) {
-    struct timespec t;
-    clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &t);
-    return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
-}
-
 /* ---- what passes do ------------------------------------------------------------------------ */
 
 /* Texels that a pass fetches and writes for each texel of its output, and how many of these there
@@ -365,17 +359,17 @@ static bool measure_fill(uint32_t size, const char *folder, cJSON *list) {
         desc.weights = weights;
         desc.push = SDV_PUSH_SPLINE;
         desc.exponent = 25;
-        double start = now();
+        double start = bench_now();
         if (round == 0) { /* takes long, and a long time needs no second one */
             covered = draw_ring(size, near, mask, truth);
-            start = now();
+            start = bench_now();
             fill_by_distance(size, near, mask, contour);
-            seconds[1] = now() - start;
+            seconds[1] = bench_now() - start;
         }
         draw_ring(size, pushed, weights, truth);
-        start = now();
+        start = bench_now();
         ok = sdv_pull_push(NULL, &desc, NULL) == LAO_OK;
-        seconds[0] = fmin(seconds[0], now() - start);
+        seconds[0] = fmin(seconds[0], bench_now() - start);
     }
     for (size_t i = 0; ok && i < pixels; i++)
         apart += fabs((double)pushed[i] - (double)near[i]) / (double)pixels;

@@ -3,6 +3,7 @@
 #include "bench_device.h"
 #include "bench_modules.h"
 #include "bench_scene.h"
+#include "bench_host.h"
 #include "scene_surface.h"
 #include "vesselsurface.h"
 
@@ -10,15 +11,8 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <time.h>
 
 enum { ROUNDS = 5, MOST_ROWS = 128, MOST_PASSES = 32 };
-
-static double now(void) {
-    struct timespec t;
-    clock_gettime(CLOCK_MONOTONIC, &t);
-    return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
-}
 
 /* ---- meshes ------------------------------------------------------------------------------- */
 
@@ -127,14 +121,14 @@ static bool draw(surface_case *c, uint32_t flags, bool counts) {
     uint32_t count = MOST_ROWS;
     lao_frame frame;
     lao_set set;
-    double ms, start = now();
+    double ms, start = bench_now();
     memset(&frame, 0, sizeof frame);
     memset(&set, 0, sizeof set);
     update.buffers = &c->object->list[5];
     update.buffer_count = 1;
     if (lao_object_update(c->context, c->handle, &update) != LAO_OK)
         return false;
-    double uploaded = 1e3 * (now() - start);
+    double uploaded = 1e3 * (bench_now() - start);
     set.object = c->handle;
     set.settings = &c->lines;
     set.module_settings = settings;

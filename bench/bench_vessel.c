@@ -3,55 +3,16 @@
 #include "bench_device.h"
 #include "bench_modules.h"
 #include "bench_scene.h"
+#include "bench_host.h"
 #include "scene_tree.h"
 #include "sdfvessel.h"
 
 #include <math.h>
-#include <pthread.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <time.h>
 
 enum { ROUNDS = 3, TREES = 4, PASSES = 160, MOST_ROWS = 64 };
-
-static double now(void) {
-    struct timespec t;
-    clock_gettime(CLOCK_MONOTONIC, &t);
-    return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
-}
-
-/* ---- two threads -------------------------------------------------------------------------- */
-
-typedef struct shared_work {
-    void (*fn)(void *arg, uint32_t index);
-    void *arg;
-    uint32_t next, count;
-    pthread_mutex_t lock;
-} shared_work;
-
-static void *work_on(void *argument) {
-    shared_work *work = argument;
-    for (;;) {
-        pthread_mutex_lock(&work->lock);
-        uint32_t index = work->next < work->count ? work->next++ : UINT32_MAX;
-        pthread_mutex_unlock(&work->lock);
-        if (index == UINT32_MAX)
-            return NULL;
-        work->fn(work->arg, index);
-    }
-}
-
-static void run_on_two(void *user, uint32_t count, void (*fn)(void *, uint32_t), void *arg) {
-    shared_work work = {fn, arg, 0, count, PTHREAD_MUTEX_INITIALIZER};
-    pthread_t thread;
-    bool two = pthread_create(&thread, NULL, work_on, &work) == 0;
-    (void)user;
-    work_on(&work);
-    if (two)
-        pthread_join(thread, NULL);
-    pthread_mutex_destroy(&work.lock);
-}
 
 /* ---- trees -------------------------------------------------------------------------------- */
 
@@ -85,7 +46,7 @@ static bool make_grid(const sdv_tree *tree, uint32_t resolution, bool two, sdv_g
     sdv_grid_desc desc;
     memset(&host, 0, sizeof host);
     memset(&desc, 0, sizeof desc);
-    host.job.run = two ? run_on_two : NULL;
+    host.job.run = two ? bench_run_on_two : NULL;
     desc.resolution = resolution;
     lao_result result = sdv_grid_build(&host, tree, &desc, out);
     return result == LAO_OK || bench_fail("sdv_grid_build: %s", lao_result_text(result));
@@ -98,7 +59,7 @@ static double brute_force(const sdv_tree *tree, uint32_t resolution) {
     volatile float sum = 0;
     if (!make_grid(tree, resolution, true, &grid))
         return NAN;
-    double start = now();
+    double start = bench_now();
     for (uint32_t i = 0; i < grid.cell_count; i += SAMPLED) {
         uint32_t x = i % grid.size[0], y = i / grid.size[0] % grid.size[1];
         float z = (float)(i / grid.size[0] / grid.size[1]);
@@ -107,7 +68,7 @@ static double brute_force(const sdv_tree *tree, uint32_t resolution) {
                                grid.origin.z + (z + 0.5f) * grid.cell);
         sum = sum + sdv_cones_distance(grid.cones, grid.cone_count, p, NULL);
     }
-    double seconds = SAMPLED * (now() - start);
+    double seconds = SAMPLED * (bench_now() - start);
     sdv_grid_free(&grid);
     return seconds;
 }
@@ -122,10 +83,10 @@ static bool move_node(sdv_tree *tree, uint32_t node, sdv_grid *grid, double *sec
     float by = 0.01f * grid->cell * (float)grid->size[2];
     for (int i = 0; i < 2; i++) {
         tree->nodes[node].z += i ? -by : by;
-        double start = now();
+        double start = bench_now();
         if (sdv_grid_update(NULL, tree, &node, 1, grid) != LAO_OK)
             return bench_fail("sdv_grid_update");
-        *seconds = grid->rebuilt ? *seconds : fmin(*seconds, now() - start);
+        *seconds = grid->rebuilt ? *seconds : fmin(*seconds, bench_now() - start);
     }
     return true;
 }
@@ -161,10 +122,10 @@ static bool measure_field(cJSON *list, sdv_tree *tree, uint32_t resolution) {
     for (int round = 0; round < 2 * ROUNDS;
          round++) { /* in turn: what disturbs one disturbs both */
         sdv_grid grid;
-        double start = now();
+        double start = bench_now();
         if (!make_grid(tree, resolution, round % 2 != 0, &grid))
             return false;
-        seconds[round % 2] = fmin(seconds[round % 2], now() - start);
+        seconds[round % 2] = fmin(seconds[round % 2], bench_now() - start);
         if (round == 0) {
             cJSON_AddNumberToObject(row, "segments", tree->segment_count);
             cJSON_AddNumberToObject(row, "resolution", resolution);
@@ -424,10 +385,10 @@ static bool measure_device_field(bench_device *device, lao_context *context, sdv
         const uint32_t node = tree->node_count / 2;
         uint32_t count = PASSES;
         cJSON *passes = cJSON_CreateObject();
-        double start = now();
+        double start = bench_now();
         ok = sdv_object_move(NULL, tree, &node, 1, &object) == LAO_OK &&
              lao_object_update(context, handle, &object.desc) == LAO_OK;
-        upload = round > 0 ? fmin(upload, 1e3 * (now() - start)) : upload;
+        upload = round > 0 ? fmin(upload, 1e3 * (bench_now() - start)) : upload;
         ok = ok && draw_field(device, context, view, handle, rows, &count);
         double ms = ok ? field_time(rows, count, passes) : 0;
         if (ok && round > 0 && ms < field) {

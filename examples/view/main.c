@@ -250,6 +250,7 @@ static void take_document(view *v) {
         if (!changed) {
             hands_forget(v);
             hands_begin(v);
+            memset(&v->flat, 0, sizeof v->flat);
             if (doc->options.frames)
                 v->film.count = (int)doc->options.frames;
         }

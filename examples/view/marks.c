@@ -7,7 +7,7 @@
 
 static const uint32_t chosen_color = 0xff1030f0, hovered_color = 0xffffffff;
 
-enum { TIP_LINES = 6, MARK_POINTS = 400 };
+enum { TIP_FACTS = 6, MARK_POINTS = 400 };
 
 /* ---- places ------------------------------------------------------------------------------ */
 
@@ -67,20 +67,21 @@ static void mark_place(const view *v, const picked *p, uint32_t color) {
     }
 }
 
-/* Beside the pointer: the first lines of what is known. */
+/* Beside the pointer: what it is on. */
 static void tell(const picked *p) {
-    char text[sizeof p->text];
-    size_t length = 0;
-    for (int i = 0; i < TIP_LINES && p->text[length]; i++)
-        length += (i > 0) + strcspn(p->text + length + (i > 0), "\n");
-    snprintf(text, sizeof text, "%.*s", (int)length, p->text);
+    char text[512], fact[128];
+    size_t used = (size_t)snprintf(text, sizeof text, "%s", p->title);
+    for (uint32_t i = 0; i < p->fact_count && i < TIP_FACTS && used < sizeof text; i++) {
+        pick_print(&p->facts[i], fact, sizeof fact);
+        used += (size_t)snprintf(text + used, sizeof text - used, "\n%s", fact);
+    }
     ui_tip(text);
 }
 
 void marks_draw(const view *v) {
     if (!v->open || v->picture.width < 1 || v->picture.height < 1)
         return;
-    ui_clip(v->picture);
+    ui_clip(true, v->picture);
     if (v->picked.kind != PICKED_NOTHING) {
         mark_branch(v, &v->picked, chosen_color);
         mark_place(v, &v->picked, chosen_color);
@@ -89,7 +90,7 @@ void marks_draw(const view *v) {
     if (v->hovered.kind == PICKED_LINE)
         mark_line(v, &v->hovered, hovered_color);
     hands_marks(v);
-    ui_clip_end();
+    ui_clip_end(true);
     if (v->hovered.kind != PICKED_NOTHING && !v->hovered_flat && v->pointer.button < 0)
         tell(&v->hovered);
 }

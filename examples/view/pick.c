@@ -4,8 +4,6 @@
 #include "orbit.h"
 
 #include <math.h>
-#include <stdarg.h>
-#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -16,31 +14,16 @@ static double dot(const double a[3], const double b[3]) {
     return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
 }
 
-static void say(picked *out, const char *format, ...) CLI_PRINTF(2, 3);
-static void say(picked *out, const char *format, ...) {
-    size_t used = strlen(out->text);
-    va_list list;
-    va_start(list, format);
-    vsnprintf(out->text + used, sizeof out->text - used, format, list);
-    va_end(list);
-}
-
 static void place(const cli_scene *scene, const double at[3], picked *out) {
     for (int k = 0; k < 3; k++)
         out->at[k] = at[k] + scene->origin[k];
-}
-
-/* The last line of what is known. */
-static void tell_place(picked *out) {
-    say(out, "\nat %.5g, %.5g, %.5g mm", out->at[0], out->at[1], out->at[2]);
 }
 
 /* ---- what there is ----------------------------------------------------------------------- */
 
 enum { RUN = 8 }; /* segments of a line that make one thing; its id is the line */
 
-/* The triangles of a set, which a wall has, or a surface in place of a tree; NULL: none. */
-static const vsf_mesh *mesh_of(const cli_set *set) {
+const vsf_mesh *pick_mesh(const cli_set *set) {
     const vsf_mesh *mesh = set->wall ? &set->wall->mesh : set->tree ? &set->tree->mesh : NULL;
     return mesh && mesh->triangle_count ? mesh : NULL;
 }
@@ -66,7 +49,7 @@ static void include(float box[6], const float *point) {
 
 static void box_of(const void *user, boxes_item item, float box[6]) {
     const cli_set *set = user;
-    const vsf_mesh *mesh = mesh_of(set);
+    const vsf_mesh *mesh = pick_mesh(set);
     for (int k = 0; k < 6; k++)
         box[k] = k < 3 ? INFINITY : -INFINITY;
     for (uint32_t i = 0; mesh && i < 3; i++)
@@ -77,7 +60,7 @@ static void box_of(const void *user, boxes_item item, float box[6]) {
 
 /* Runs of lines, or triangles. NULL: reported. */
 static boxes_item *items_of(const cli_set *set, uint32_t *count) {
-    const vsf_mesh *mesh = mesh_of(set);
+    const vsf_mesh *mesh = pick_mesh(set);
     const io_lines *lines = &set->lines;
     size_t most = mesh             ? mesh->triangle_count
                   : has_lines(set) ? (size_t)lines->point_count / RUN + lines->line_count
@@ -219,54 +202,7 @@ static void pick_lines(const pickable *p, const cli_shot *shot, const pick_ray *
         place(p->scene, found, out);
 }
 
-static void say_row(picked *out, const io_attribute *a, size_t row) {
-    say(out, "\n%s:", a->name);
-    for (uint32_t k = 0; k < a->components && k < 4; k++)
-        say(out, " %.5g", (double)a->data[row * a->components + k]);
-}
-
-static void tell_line(const cli_scene *scene, picked *out) {
-    const cli_set *set = &scene->sets[out->set];
-    const io_lines *lines = &set->lines;
-    uint32_t first = lines->offsets[out->line], end = lines->offsets[out->line + 1];
-    double length = 0;
-    for (uint32_t p = first; p + 1 < end; p++) {
-        const float *a = lines->points + 3 * (size_t)p;
-        double d[3] = {(double)a[3] - (double)a[0], (double)a[4] - (double)a[1],
-                       (double)a[5] - (double)a[2]};
-        length += sqrt(dot(d, d));
-    }
-    say(out, "line %u of %s\npoint %u of %u, %.5g mm long", out->line,
-        document_file_name(set->name), out->point - first, end - first, length);
-    for (uint32_t i = 0; i < lines->point_attribute_count && i < 6; i++)
-        say_row(out, &lines->point_attributes[i], out->point);
-    for (uint32_t i = 0; i < lines->line_attribute_count && i < 4; i++)
-        say_row(out, &lines->line_attributes[i], out->line);
-}
-
 /* ---- trees ------------------------------------------------------------------------------- */
-
-static void tell_node(const cli_tree *of, uint32_t node, picked *out) {
-    const sdv_tree *tree = &of->vessel.tree;
-    uint32_t owner = of->reduced.owners[node];
-    say(out, "\nnode %u, radius %.4g mm", node, (double)tree->nodes[node].w);
-    if (of->distances && owner != SDV_NONE)
-        say(out, "\n%.4g mm from the target", (double)of->distances[owner]);
-    for (uint32_t i = 0; i < tree->node_attribute_count && i < 6; i++) {
-        const sdv_attribute *a = &tree->node_attributes[i];
-        say(out, "\n%s: %.5g", a->name,
-            (double)a->values[(size_t)node * (a->components ? a->components : 1)]);
-    }
-}
-
-static void tell_tree(const cli_tree *tree, picked *out) {
-    const char *name = document_file_name(tree->name);
-    if (out->line == SDV_NONE)
-        say(out, "root of %s", name);
-    else
-        say(out, "segment %u of %s", out->line, name);
-    tell_node(tree, out->point, out);
-}
 
 /* Where the ray meets a set's tree before `first`, which is moved there. */
 static void pick_tree(const cli_scene *scene, uint32_t set, const pick_ray *ray, double *first,
@@ -364,30 +300,13 @@ static uint32_t nearest_corner(const vsf_mesh *mesh, uint32_t triangle, const do
     return best;
 }
 
-/* The distance (mm) of a vertex to what is lit now; VSF_FAR: nothing is. */
-static float lit_distance(const cli_wall *wall, uint32_t vertex) {
-    const float *pair = wall->object.near_pair + 2 * (size_t)vertex;
-    return wall->lit ? vsf_near_mix(pair[0], pair[1], wall->settings.near_part) : VSF_FAR;
-}
-
-static void tell_surface(const cli_set *set, picked *out) {
-    const cli_wall *wall = set->wall;
-    const vsf_mesh *mesh = mesh_of(set);
-    say(out, "surface %s\ntriangle %u, vertex %u", document_file_name(set->name), out->line,
-        out->point);
-    if (wall && mesh->attribute_count)
-        say(out, "\n%s: %.5g", mesh->attributes[0].name, (double)wall->object.values[out->point]);
-    if (wall && lit_distance(wall, out->point) < 1e30f)
-        say(out, "\n%.4g mm from the flow of this moment", (double)lit_distance(wall, out->point));
-}
-
 /* The same of a set's triangles; what is behind the front faces of a wall is picked through them.
  */
 static void pick_surface(const pickable *p, uint32_t set, const pick_ray *ray, double *first,
                          picked *out) {
     pick_ray thin = *ray;
     thin.near = thin.slope = 0;
-    triangle_search s = {ray, mesh_of(&p->scene->sets[set]), *first, 0};
+    triangle_search s = {ray, pick_mesh(&p->scene->sets[set]), *first, 0};
     double at[3];
     boxes_along(&p->sets[set], &thin, search_triangle, &s);
     if (!(s.best < *first))
@@ -404,25 +323,6 @@ static void pick_surface(const pickable *p, uint32_t set, const pick_ray *ray, d
 }
 
 /* ---- all --------------------------------------------------------------------------------- */
-
-void pick_tell(const cli_scene *scene, picked *of) {
-    const cli_set *set = &scene->sets[of->set];
-    of->text[0] = '\0';
-    switch (of->kind) {
-    case PICKED_LINE:
-        tell_line(scene, of);
-        break;
-    case PICKED_TREE:
-        tell_tree(set->tree, of);
-        break;
-    case PICKED_SURFACE:
-        tell_surface(set, of);
-        break;
-    case PICKED_NOTHING:
-        return;
-    }
-    tell_place(of);
-}
 
 void pick_at(const pickable *p, const cli_shot *shot, double x, double y, double near,
              picked *out) {
@@ -443,7 +343,7 @@ void pick_at(const pickable *p, const cli_shot *shot, double x, double y, double
     }
     bool nothing = out->kind == PICKED_NOTHING;
     for (uint32_t i = 0; i < p->count && nothing; i++) {
-        if (mesh_of(&scene->sets[i]))
+        if (pick_mesh(&scene->sets[i]))
             pick_surface(p, i, &ray, &first, out);
     }
     pick_tell(scene, out);

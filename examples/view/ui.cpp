@@ -421,16 +421,27 @@ void ui_disable_end(void) {
 // ---- drawing ----
 
 ui_area ui_canvas(const char *label, float width, float height) {
-    ImVec2 at = ImGui::GetCursorScreenPos(), pointer = ImGui::GetIO().MousePos;
-    ImGui::InvisibleButton(label, ImVec2(width, height));
+    ImGuiIO &io = ImGui::GetIO();
+    ImVec2 at = ImGui::GetCursorScreenPos(), dragged = ImGui::GetMouseDragDelta(0);
+    bool let_go = ImGui::InvisibleButton(label, ImVec2(width, height));
+    ImGui::SetItemUsingMouseWheel(); // it does not scroll the panel
     placed(label, false);
-    ui_area area = {at.x,
-                    at.y,
-                    width,
-                    height,
-                    {pointer.x, pointer.y},
-                    ImGui::IsItemHovered(),
-                    ImGui::IsItemActive()};
+    ui_area area = {};
+    area.x = at.x;
+    area.y = at.y;
+    area.width = width;
+    area.height = height;
+    area.pointer[0] = io.MousePos.x;
+    area.pointer[1] = io.MousePos.y;
+    area.hovered = ImGui::IsItemHovered();
+    area.pressed = ImGui::IsItemActive();
+    area.clicked = let_go && dragged.x == 0 && dragged.y == 0;
+    if (area.pressed && ImGui::IsMouseDragging(0)) {
+        area.moved[0] = io.MouseDelta.x;
+        area.moved[1] = io.MouseDelta.y;
+    }
+    if (area.hovered)
+        area.wheel = io.MouseWheel;
     return area;
 }
 
@@ -454,13 +465,13 @@ void ui_draw_text(bool over, float x, float y, uint32_t color, const char *text)
     list_of(over)->AddText(ImVec2(x, y), color_of(color), text);
 }
 
-void ui_clip(window_rect at) {
-    list_of(true)->PushClipRect(ImVec2((float)at.x, (float)at.y),
+void ui_clip(bool over, window_rect at) {
+    list_of(over)->PushClipRect(ImVec2((float)at.x, (float)at.y),
                                 ImVec2((float)(at.x + at.width), (float)(at.y + at.height)));
 }
 
-void ui_clip_end(void) {
-    list_of(true)->PopClipRect();
+void ui_clip_end(bool over) {
+    list_of(over)->PopClipRect();
 }
 
 float ui_text_width(const char *text) {

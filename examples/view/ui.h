@@ -103,7 +103,9 @@ void ui_disable_end(void);
 /* A place of that size in the panel for drawing; says where it is and whether it is clicked. */
 typedef struct ui_area {
     float x, y, width, height, pointer[2];
+    float moved[2], wheel; /* since the last frame: dragged by the button, turned over it */
     bool hovered, pressed; /* pressed: the button is down since it was pressed here */
+    bool clicked;          /* it has been let go where it was pressed */
 } ui_area;
 ui_area ui_canvas(const char *label, float width, float height);
 /* Colours: 0xAABBGGRR. Over the whole window with `over`, else in the panel. */
@@ -112,9 +114,9 @@ void ui_draw_box(bool over, float ax, float ay, float bx, float by, uint32_t col
 void ui_draw_disc(bool over, float x, float y, float radius, uint32_t color);
 void ui_draw_ring(bool over, float x, float y, float radius, uint32_t color, float width);
 void ui_draw_text(bool over, float x, float y, uint32_t color, const char *text);
-/* What is drawn over the window until the end is cut off at the borders of a part of it. */
-void ui_clip(window_rect place);
-void ui_clip_end(void);
+/* What is drawn until the end is cut off at the borders of a part of the window. */
+void ui_clip(bool over, window_rect place);
+void ui_clip_end(bool over);
 float ui_text_width(const char *text);
 float ui_text_height(void);
 void ui_copy(const char *text); /* to the clipboard */

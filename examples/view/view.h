@@ -48,6 +48,12 @@ typedef struct hands {
     bool stale;                      /* a slider has been moved, and not yet let go */
 } hands;
 
+/* Which part of the flat tree is shown. */
+typedef struct flat_view {
+    float zoom;      /* 1, or 0 at first: all of it */
+    float left, top; /* in parts of the whole */
+} flat_view;
+
 /* A video that is being made. */
 typedef struct film {
     char path[PATH_SIZE];
@@ -107,6 +113,7 @@ typedef struct view {
     pointer pointer;
     picked picked, hovered;
     bool hovered_flat; /* in the 2D view */
+    flat_view flat;
     hands hands;
     film film;
     lao_lines picked_lines; /* the selected line once more, on top */
@@ -229,6 +236,11 @@ void player_panel(view *v, window_rect place);
 
 /* The user interface of a frame; says where the picture goes. */
 void panel_draw(view *v);
+/* Its tabs; the list of keys. */
+void panel_scene(view *v);
+void panel_view(view *v);
+void panel_save(view *v);
+void panel_keys(void);
 void panel_settings(view *v);
 /* The widget of a setting, and its help. */
 bool panel_edit(const lao_setting_row *row, float *value);

@@ -293,6 +293,8 @@ static void uses(void **state) {
     expect_ok(RUN("surface --scene aneurysm " SMALL "-o a.png --save-camera c.json"));
     expect_ok(RUN("surface --scene aneurysm --camera c.json " SMALL "-o b.png --backend vk"));
     assert_true(same_files("a.png", "b.png"));
+    expect_ok(RUN("surface --scene aneurysm --lines none --camera c.json " SMALL "-o b.png"));
+    assert_false(same_files("a.png", "b.png")); /* it has a flow of its own */
     expect_ok(RUN("surface cm.obj --unit cm --baseline transparent " SMALL "-o t.png"));
     expect_ok(RUN("surface cm.obj --unit cm --focus 20,30 --depth-shadow on --attenuation on " SMALL
                   "-o e.png --timings t.json"));
@@ -450,6 +452,15 @@ static void looks(void **state) {
         if (i > 0 && i < 4) /* a straight tube has no suggestive contour */
             assert_false(same_files("gl0.png", gl));
     }
+    /* three legends stand in line where they have no room side by side; in less room one is left
+     * out */
+    expect_ok(
+        RUN("surface --scene aneurysm --legend right --size 240x180 --ssaa 1 -o legends.png"));
+    program_run run =
+        RUN("surface --scene aneurysm --legend right --size 120x90 --ssaa 1 -o x.png");
+    assert_int_equal(run.code, 0);
+    assert_non_null(strstr(run.err, "x.png: warning: no room for"));
+    program_free(&run);
     expect_fault(RUN("surface tube.obj --contours 0 -o x.png"), 2, "--contours");
     expect_fault(RUN("surface tube.obj --wall-colormap rainbow -o x.png"), 2, "--wall-colormap");
 }

@@ -322,6 +322,34 @@ static void assert_saved(desktop *d) {
     assert_same_file("picture.png", "program.png");
 }
 
+/* With the pointer above a leaf the wheel makes it larger there, so that it is the nearest one from
+ * afar; dragged along, the other one is there, and nothing has been selected. */
+static void moves_the_flat_tree(desktop *d, int leaf) {
+    int place[4];
+    user_sees(d, "layout", place);
+    int x = place[0] + place[2] / 4, y = place[1] + 7 * place[3] / 10;
+    int right = x + place[2] / 2, left = x - place[2] / 5;
+    user_points(d, x, y);
+    for (int i = 0; i < 6; i++) {
+        user_presses(d, 4, true);
+        user_presses(d, 4, false);
+    }
+    uint32_t hovered = viewer_said(d, "hovers "), nodes = viewer_said(d, "node ");
+    user_points(d, right, y);
+    viewer_rests(d);
+    assert_int_equal(viewer_said(d, "hovers "), hovered);
+    for (int i = 0; i < 2; i++) {
+        user_points(d, right, y);
+        user_presses(d, 1, true);
+        user_points(d, x, y);
+        user_points(d, left, y);
+        user_presses(d, 1, false);
+    }
+    user_points(d, x, y);
+    viewer_hears(d, leaf == 2 ? "hovers 2 0 2 3" : "hovers 2 0 1 2");
+    assert_int_equal(viewer_said(d, "node "), nodes);
+}
+
 /* The pointer on a branch of the picture, then on one of the flat tree, which is clicked. */
 static void hovers_and_picks(desktop *d) {
     int place[4];
@@ -334,8 +362,9 @@ static void hovers_and_picks(desktop *d) {
     int leaf = viewer_hears(d, "hovers 2 0 ")[2] - '0'; /* its segment is the one before */
     assert_true(leaf == 2 || leaf == 3);
     user_presses(d, 1, true);
-    assert_int_equal(atoi(viewer_hears(d, "node ")), leaf);
     user_presses(d, 1, false);
+    assert_int_equal(atoi(viewer_hears(d, "node ")), leaf);
+    moves_the_flat_tree(d, leaf);
 }
 
 static void start_tree(fixture *f) {
@@ -367,6 +396,20 @@ static void undoes(desktop *d, const char *before) {
     assert_string_equal(command, before);
 }
 
+/* What was clicked, with its distance from the target that is there since. */
+static void tells_of_the_target(desktop *d) {
+    double radius = 0, distance = 1;
+    user_clicks(d, "Copy JSON");
+    assert_int_equal(
+        sscanf(viewer_hears(d, "json "),
+               "{\"kind\":\"tree\",\"of\":\"aim.swc\",\"segment\":0,\"node\":1,\"facts\":"
+               "{\"radius\":%lf,\"from the target\":%lf,",
+               &radius, &distance),
+        2);
+    assert_true(fabs(radius - 3) < 1e-6);
+    assert_true(distance < 0); /* the ball is on the vessel */
+}
+
 /* A picture; a branch in both views, and a target on one; and back. */
 static void places_on_trees(void **state) {
     fixture *f = *state;
@@ -381,6 +424,7 @@ static void places_on_trees(void **state) {
     assert_int_equal(viewer_hears(d, "picked ")[0], '2');
     user_clicks(d, "Target here");
     assert_placed(d, " --target ", true);
+    tells_of_the_target(d);
     undoes(d, before);
     quit(f);
 }
