@@ -767,7 +767,8 @@ static int leave(void **state) {
     return system("rm -f -- *.png *.exr *.json *.svg *.swc *.obj") != 0;
 }
 
-/* test_vessel_cli PROGRAM [looks] [FILTER]: numbers and files, or pictures and their inks. */
+/* test_vessel_cli PROGRAM [marks] [FILTER]: numbers, files and colours; or what is linked, marked
+ * and inked, and lenses. Halves, so that they run side by side. */
 int main(int argc, char **argv) {
     const struct CMUnitTest numbers[] = {
         cmocka_unit_test(test_help),
@@ -781,18 +782,19 @@ int main(int argc, char **argv) {
         cmocka_unit_test(test_cameras),
         cmocka_unit_test(test_layout_picture),
         cmocka_unit_test(test_device_field),
+        cmocka_unit_test(test_looks),
         cmocka_unit_test(test_no_gpu), /* the last: it changes the environment */
     };
-    const struct CMUnitTest looks[] = {
-        cmocka_unit_test(test_looks),  cmocka_unit_test(test_link),    cmocka_unit_test(test_risk),
-        cmocka_unit_test(test_legend), cmocka_unit_test(test_implied), cmocka_unit_test(test_lens),
+    const struct CMUnitTest marks[] = {
+        cmocka_unit_test(test_link),    cmocka_unit_test(test_risk), cmocka_unit_test(test_legend),
+        cmocka_unit_test(test_implied), cmocka_unit_test(test_lens),
     };
-    int second = argc > 2 && strcmp(argv[2], "looks") == 0;
+    int second = argc > 2 && strcmp(argv[2], "marks") == 0;
     if (argc < 2)
         return 1;
     program = argv[1];
     if (argc > 2 + second)
         cmocka_set_test_filter(argv[2 + second]);
-    return second ? cmocka_run_group_tests(looks, enter, leave)
+    return second ? cmocka_run_group_tests(marks, enter, leave)
                   : cmocka_run_group_tests(numbers, enter, leave);
 }
