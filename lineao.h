@@ -34,7 +34,8 @@
    print, abort, keep global state or link to a GL or Vulkan library.
 
    FILES  OpenGL host: lineao.h lineao_shaders.h lineao_gl.c. Vulkan host: lineao.h lineao_shaders.h
-   lineao_vk.c.
+   lineao_vk.c. A further module (sdfvessel.h, vesselsurface.h) brings its shaders in a file of its
+   own (sdfvessel_shaders.h, ...), which lineao_shaders.h takes when it lies beside.
 
    CONFIGURATION (define before including)
        LINEAO_IMPLEMENTATION   the function bodies, in one translation unit
@@ -262,8 +263,8 @@ typedef enum lao_pass_kind {
                             one */
     LAO_PASS_DRAW_LINES, /* four vertices for each segment of the set's lines; reads their buffers
                           */
-    LAO_PASS_DRAW_LINES_FIRST, /* of a set drawn in two parts the first, of any other everything */
-    LAO_PASS_DRAW_LINES_REST   /* the second part; nothing of any other set */
+    LAO_PASS_DRAW_LINES_FIRST, /* of a set drawn in parts the first, of any other everything */
+    LAO_PASS_DRAW_LINES_REST   /* part 1 + lao_plan_step.iteration; nothing of any other set */
 } lao_pass_kind;
 #define LAO_PASS_DRAWS_LINES(kind) ((kind) >= LAO_PASS_DRAW_LINES)
 typedef enum lao_repeat {
@@ -272,7 +273,8 @@ typedef enum lao_repeat {
     LAO_REPEAT_LEVELS_DOWN, /* last - 1 .. 0 */
     LAO_REPEAT_COUNT,       /* as often as the setting `repeat_setting` says */
     LAO_REPEAT_WITH_LAST    /* in every turn of the row before that is not WITH_LAST itself, behind
-                               it and at its level; `repeat_setting` (optional): so often each turn */
+                               it, at its level and as its iteration; `repeat_setting` (optional):
+                               so often each turn, which is the iteration then */
 } lao_repeat;
 typedef enum lao_scope {
     LAO_SCOPE_FRAME,  /* once, with the settings of the first set that its conditions hold for */
@@ -394,7 +396,7 @@ typedef struct lao_module {
     uint32_t setting_count;
     const lao_preset_row *presets;
     uint32_t preset_count;
-    const lao_shader *shaders; /* NULL: those of lineao_shaders.h */
+    const lao_shader *shaders; /* NULL: those of lineao_shaders.h and of what it takes */
     uint32_t shader_count;
     const lao_buffer_row *buffers;
     uint32_t buffer_count;
@@ -963,9 +965,14 @@ typedef struct lao_backend_caps {
     uint32_t max_image_size;    /* px */
     uint32_t max_texture_units; /* textures one stage can read */
     uint32_t max_buffer_texels; /* longest texel buffer */
-    const lao_shader *shaders;  /* lineao_shaders.h */
+    const lao_shader *shaders;  /* lineao_shaders.h and what it takes */
     uint32_t shader_count;
 } lao_backend_caps;
+
+/* What a backend says, with the name, of a shader that is not there. */
+#define LAO_NO_SHADER                                                                              \
+    "%s: there is no such shader; a module's file of shaders (sdfvessel_shaders.h, ...) must lie " \
+    "beside lineao_shaders.h"
 
 /* What the core lends to its backend from attach to detach. */
 typedef struct lao_host {
@@ -989,13 +996,15 @@ typedef struct lao_group {
     uint32_t first, count;
 } lao_group;
 
+#define LAO_PARTS 4 /* in which many lines are drawn, each as many as those before (about) */
+
 /* What one draw reads and how much it draws: an object, or a stretch of a line set that fits one
    texel buffer (segment s reads texels s .. s + 3). */
 typedef struct lao_chunk {
     void
         *buffers[LAO_MAX_BUFFERS]; /* backend buffers by index in lao_graph.buffers; NULL: absent */
     uint32_t count;                /* segments; triangles */
-    uint32_t part;                 /* segments of the first part */
+    uint32_t ends[LAO_PARTS];      /* behind the last segment of each part */
     const lao_group *groups;       /* in order of time; NULL: the lines have no times */
     uint32_t group_count;
 } lao_chunk;
@@ -1010,7 +1019,7 @@ typedef struct lao_draw {
     const lao_chunk *chunks; /* of the lines */
     uint32_t chunk_count;
     lao_window window;       /* of the lines */
-    int parted;              /* they are drawn in two parts; not with a window */
+    int parted;              /* they are drawn in parts; not with a window */
     const lao_chunk *object; /* NULL: none */
 } lao_draw;
 
@@ -2225,8 +2234,8 @@ static const lao_image_row lao__images[] = {
     {"tangent",       LAO_FORMAT_RGBA16F, LAO_SIZE_FULL, 0, 0, NULL,     0,                LAO_ENCODING_PLAIN,   {0, 0, 0, 0}, LAO__ANY,                               {"tangent.X", "tangent.Y", "tangent.Z", "zoom.V"}},
     {"depth",         LAO_FORMAT_R32F,    LAO_SIZE_FULL, 0, 0, NULL,     0,                LAO_ENCODING_PLAIN,   {1, 1, 1, 1}, LAO__ANY,                               {"depth.Z", NULL, NULL, NULL}},
     {"zbuffer",       LAO_FORMAT_D32F,    LAO_SIZE_FULL, 0, 0, NULL,     0,                LAO_ENCODING_PLAIN,   {1, 0, 0, 0}, LAO__ANY,                               {NULL, NULL, NULL, NULL}},
-    {"far_tiles",     LAO_FORMAT_R32F,    LAO_SIZE_FULL, 0, 0, "*",      0,                LAO_ENCODING_PLAIN,   {0, 0, 0, 0}, {"cull_hidden", '=', 1},                {NULL, NULL, NULL, NULL}},
-    {"far",           LAO_FORMAT_R32F,    LAO_SIZE_FULL, 0, 0, "*",      0,                LAO_ENCODING_PLAIN,   {0, 0, 0, 0}, {"cull_hidden", '=', 1},                {NULL, NULL, NULL, NULL}},
+    {"far_tiles",     LAO_FORMAT_R32F,    LAO_SIZE_FULL, 0, 0, "*",      0,                LAO_ENCODING_PLAIN,   {0, 0, 0, 0}, {"cull_hidden", '>', 0},                {NULL, NULL, NULL, NULL}},
+    {"far",           LAO_FORMAT_R32F,    LAO_SIZE_FULL, 0, 0, "*",      0,                LAO_ENCODING_PLAIN,   {0, 0, 0, 0}, {"cull_hidden", '>', 0},                {NULL, NULL, NULL, NULL}},
     {"tensor",        LAO_FORMAT_RGBA32F, LAO_SIZE_FULL, 0, 0, "levels", 0,                LAO_ENCODING_PLAIN,   {0, 0, 0, 0}, {"occlusion", '=', 1},                  {NULL, NULL, NULL, NULL}},
     {"level",         LAO_FORMAT_R32UI,   LAO_SIZE_FULL, 0, 0, "levels", 0,                LAO_ENCODING_LEVEL,   {0, 0, 0, 0}, {"occlusion", '=', 1},                  {"axial%d.C", "axial%d.S", "axial%d.D", NULL}},
     {"level_tangent", LAO_FORMAT_RGBA8,   LAO_SIZE_FULL, 0, 0, "levels", 0,                LAO_ENCODING_SIGNED8, {LAO__UNKNOWN, LAO__UNKNOWN, LAO__UNKNOWN, LAO__UNKNOWN}, {"light", '=', LAO_LIGHT_AUTHOR},       {NULL, NULL, NULL, NULL}},
@@ -2249,17 +2258,17 @@ static const lao_pass_row lao__passes[] = {
      {LAO__CLEAR("color"), LAO__CLEAR("tangent"), LAO__CLEAR("depth"), LAO__KEEP("zbuffer")}, {LAO__READ("#points"), LAO__READ("#colors"), LAO__READ("#order")}},
     {"lines_halo", LAO_PASS_DRAW_LINES_FIRST, "lines_halo", 0, LAO_STAGE_DRAW, LAO_SCOPE_PER_SET, LAO_REPEAT_NONE, NULL, LAO_BLEND_NONE, LAO_DEPTH_NEARER, LAO_CULL_NONE, {LAO__LINES, {"halo", '=', LAO_HALO_DEPTH}},
      {LAO__CLEAR("color"), LAO__CLEAR("tangent"), LAO__CLEAR("depth"), LAO__KEEP("zbuffer")}, {LAO__READ("#points"), LAO__READ("#colors"), LAO__READ("#order")}},
-    /* of many lines a part is drawn first; of the rest only what does not lie wholly behind the farthest depth around it */
-    {"far_tiles", LAO_PASS_FULLSCREEN, "far", 0, LAO_STAGE_DRAW, LAO_SCOPE_PER_SET, LAO_REPEAT_NONE, NULL, LAO_BLEND_NONE, LAO_DEPTH_NONE, LAO_CULL_NONE, {LAO__LINES, {"cull_hidden", '=', 1}, {"@color", '=', 0}},
-     {LAO__WRITE_LEVEL("far_tiles", 3)}, {LAO__READ("zbuffer")}},
-    {"far", LAO_PASS_FULLSCREEN, "far", 1, LAO_STAGE_DRAW, LAO_SCOPE_PER_SET, LAO_REPEAT_NONE, NULL, LAO_BLEND_NONE, LAO_DEPTH_NONE, LAO_CULL_NONE, {LAO__LINES, {"cull_hidden", '=', 1}, {"@color", '=', 0}},
-     {LAO__WRITE_LEVEL("far", 3)}, {LAO__READ_LEVEL("far_tiles", 3)}},
-    {"lines_rest", LAO_PASS_DRAW_LINES_REST, "lines", 1, LAO_STAGE_DRAW, LAO_SCOPE_PER_SET, LAO_REPEAT_NONE, NULL, LAO_BLEND_NONE, LAO_DEPTH_NEARER, LAO_CULL_NONE, {LAO__LINES, {"cull_hidden", '=', 1}, {"halo", '=', LAO_HALO_NONE}},
-     {LAO__KEEP("color"), LAO__KEEP("tangent"), LAO__KEEP("depth"), LAO__KEEP("zbuffer")}, {LAO__READ("#points"), LAO__READ("#colors"), LAO__READ("#order"), LAO__READ_LEVEL("far", 3)}},
-    {"lines_rim_rest", LAO_PASS_DRAW_LINES_REST, "lines_rim", 1, LAO_STAGE_DRAW, LAO_SCOPE_PER_SET, LAO_REPEAT_NONE, NULL, LAO_BLEND_NONE, LAO_DEPTH_NEARER, LAO_CULL_NONE, {LAO__LINES, {"cull_hidden", '=', 1}, {"halo", '=', LAO_HALO_UNIFORM}},
-     {LAO__KEEP("color"), LAO__KEEP("tangent"), LAO__KEEP("depth"), LAO__KEEP("zbuffer")}, {LAO__READ("#points"), LAO__READ("#colors"), LAO__READ("#order"), LAO__READ_LEVEL("far", 3)}},
-    {"lines_halo_rest", LAO_PASS_DRAW_LINES_REST, "lines_halo", 1, LAO_STAGE_DRAW, LAO_SCOPE_PER_SET, LAO_REPEAT_NONE, NULL, LAO_BLEND_NONE, LAO_DEPTH_NEARER, LAO_CULL_NONE, {LAO__LINES, {"cull_hidden", '=', 1}, {"halo", '=', LAO_HALO_DEPTH}},
-     {LAO__KEEP("color"), LAO__KEEP("tangent"), LAO__KEEP("depth"), LAO__KEEP("zbuffer")}, {LAO__READ("#points"), LAO__READ("#colors"), LAO__READ("#order"), LAO__READ_LEVEL("far", 3)}},
+    /* of many lines a part is drawn first; of each further part only what does not lie wholly behind the farthest depth around it */
+    {"far_tiles", LAO_PASS_FULLSCREEN, "far", 0, LAO_STAGE_DRAW, LAO_SCOPE_PER_SET, LAO_REPEAT_COUNT, "cull_hidden", LAO_BLEND_NONE, LAO_DEPTH_NONE, LAO_CULL_NONE, {LAO__LINES, {"cull_hidden", '>', 0}, {"@color", '=', 0}},
+     {LAO__WRITE_LEVEL("far_tiles", 2)}, {LAO__READ("zbuffer")}},
+    {"far", LAO_PASS_FULLSCREEN, "far", 1, LAO_STAGE_DRAW, LAO_SCOPE_PER_SET, LAO_REPEAT_WITH_LAST, NULL, LAO_BLEND_NONE, LAO_DEPTH_NONE, LAO_CULL_NONE, {LAO__LINES, {"cull_hidden", '>', 0}, {"@color", '=', 0}},
+     {LAO__WRITE_LEVEL("far", 2)}, {LAO__READ_LEVEL("far_tiles", 2)}},
+    {"lines_rest", LAO_PASS_DRAW_LINES_REST, "lines", 1, LAO_STAGE_DRAW, LAO_SCOPE_PER_SET, LAO_REPEAT_WITH_LAST, NULL, LAO_BLEND_NONE, LAO_DEPTH_NEARER, LAO_CULL_NONE, {LAO__LINES, {"cull_hidden", '>', 0}, {"halo", '=', LAO_HALO_NONE}},
+     {LAO__KEEP("color"), LAO__KEEP("tangent"), LAO__KEEP("depth"), LAO__KEEP("zbuffer")}, {LAO__READ("#points"), LAO__READ("#colors"), LAO__READ("#order"), LAO__READ_LEVEL("far", 2)}},
+    {"lines_rim_rest", LAO_PASS_DRAW_LINES_REST, "lines_rim", 1, LAO_STAGE_DRAW, LAO_SCOPE_PER_SET, LAO_REPEAT_WITH_LAST, NULL, LAO_BLEND_NONE, LAO_DEPTH_NEARER, LAO_CULL_NONE, {LAO__LINES, {"cull_hidden", '>', 0}, {"halo", '=', LAO_HALO_UNIFORM}},
+     {LAO__KEEP("color"), LAO__KEEP("tangent"), LAO__KEEP("depth"), LAO__KEEP("zbuffer")}, {LAO__READ("#points"), LAO__READ("#colors"), LAO__READ("#order"), LAO__READ_LEVEL("far", 2)}},
+    {"lines_halo_rest", LAO_PASS_DRAW_LINES_REST, "lines_halo", 1, LAO_STAGE_DRAW, LAO_SCOPE_PER_SET, LAO_REPEAT_WITH_LAST, NULL, LAO_BLEND_NONE, LAO_DEPTH_NEARER, LAO_CULL_NONE, {LAO__LINES, {"cull_hidden", '>', 0}, {"halo", '=', LAO_HALO_DEPTH}},
+     {LAO__KEEP("color"), LAO__KEEP("tangent"), LAO__KEEP("depth"), LAO__KEEP("zbuffer")}, {LAO__READ("#points"), LAO__READ("#colors"), LAO__READ("#order"), LAO__READ_LEVEL("far", 2)}},
     /* the host's G-buffer instead of our lines: its mask as depth, for the passes that skip background by it */
     {"cover", LAO_PASS_FULLSCREEN, "cover", 0, LAO_STAGE_DRAW, LAO_SCOPE_PER_SET, LAO_REPEAT_NONE, NULL, LAO_BLEND_NONE, LAO_DEPTH_ALWAYS, LAO_CULL_NONE, {{"@color", '>', 0}},
      {LAO__CLEAR("zbuffer")}, {LAO__READ("color")}},
@@ -3464,7 +3473,7 @@ static void lao__plan_turn(lao__planner *p, uint32_t pass, uint32_t set, uint32_
         const char *setting = graph->passes[i]->repeat_setting;
         n = setting ? (uint32_t)lao__value(p, graph->pass_modules[i], set, setting) : 1;
         for (k = 0; k < n && lao__row_runs(p, i, set); k++) {
-            lao__step_add(p, i, set, level, k);
+            lao__step_add(p, i, set, level, setting ? k : iteration);
         }
     }
 }
@@ -3779,11 +3788,8 @@ void lao_plan_print(const lao_graph *graph, const lao_plan *plan,
 
 #define LAO__KEY_SIZE 9
 #define LAO__GROUPS 256u /* of a chunk, at most */
-enum {
-    LAO__PARTED = 64, /* lines; fewer are one part */
-    LAO__PART = 4     /* of so many lines one is in the first part */
-};
-#define LAO__DENSE 4.0 /* pixels of a segment, at most, where parts pay */
+#define LAO__PARTED 64u  /* lines; fewer are one part */
+#define LAO__DENSE 4.0   /* pixels of a segment, at most, where parts pay */
 
 typedef struct lao__lines {
     lao_chunk *chunks;
@@ -4102,7 +4108,7 @@ typedef struct lao__texels {
     float *points;   /* x, y, z, time */
     uint8_t *colors; /* RGBA */
     uint64_t count;
-    uint64_t part; /* of them, in the first part */
+    uint64_t ends[LAO_PARTS]; /* behind each part */
     int timed;
 } lao__texels;
 
@@ -4175,17 +4181,27 @@ static void lao__line(lao__texels *out, const lao_lines_desc *desc, uint32_t beg
     lao__run(out, desc, first, i);
 }
 
-/* Every LAO__PART-th line, which make the first part of many, then the others. */
-static void lao__lines_walk(lao__texels *out, const lao_lines_desc *desc, const uint32_t *offsets) {
-    uint32_t line, every = desc->line_count < LAO__PARTED ? 1 : LAO__PART;
-    for (line = 0; line < desc->line_count; line += every) {
-        lao__line(out, desc, offsets[line], offsets[line + 1]);
+/* Of many lines every eighth, every eighth, every fourth, every second: each part is spread over
+   the whole set. */
+static uint32_t lao__part_of(const lao_lines_desc *desc, uint32_t line) {
+    uint32_t part = LAO_PARTS - 1;
+    while (part > 0 && line % 2 == 0) {
+        line /= 2;
+        part--;
     }
-    out->part = out->count;
-    for (line = 0; line < desc->line_count; line++) {
-        if (line % every != 0) {
-            lao__line(out, desc, offsets[line], offsets[line + 1]);
+    return desc->line_count < LAO__PARTED ? 0 : part;
+}
+
+/* Lines part by part. */
+static void lao__lines_walk(lao__texels *out, const lao_lines_desc *desc, const uint32_t *offsets) {
+    uint32_t line, part;
+    for (part = 0; part < LAO_PARTS; part++) {
+        for (line = 0; line < desc->line_count; line++) {
+            if (lao__part_of(desc, line) == part) {
+                lao__line(out, desc, offsets[line], offsets[line + 1]);
+            }
         }
+        out->ends[part] = out->count;
     }
 }
 
@@ -4339,6 +4355,7 @@ static lao_result lao__chunk_make(lao_context *context, lao_chunk *chunk, const 
                                   uint64_t first, uint32_t count) {
     lao_buffer_desc buffer;
     lao_result result;
+    uint32_t i;
     buffer.texel_count = count;
     buffer.format = LAO_FORMAT_RGBA32F;
     buffer.data = texels->points + 4 * first;
@@ -4351,9 +4368,9 @@ static lao_result lao__chunk_make(lao_context *context, lao_chunk *chunk, const 
                                                 &chunk->buffers[LAO__BUFFER_COLORS]);
     }
     chunk->count = count - 3;
-    if (texels->part > first) {
-        chunk->part =
-            texels->part - first < chunk->count ? (uint32_t)(texels->part - first) : chunk->count;
+    for (i = 0; i < LAO_PARTS; i++) {
+        const uint64_t end = texels->ends[i] > first ? texels->ends[i] - first : 0;
+        chunk->ends[i] = end < chunk->count ? (uint32_t)end : chunk->count;
     }
     if (result == LAO_OK && texels->timed) {
         result = lao__chunk_order(context, chunk, texels->points + 4 * first);
@@ -4741,7 +4758,7 @@ static lao_result lao__view_reserve(lao_context *context, lao__view *view, uint3
 }
 
 /* Resolves one set's settings; sets *structural when a value that shapes the plan changed. */
-/* Is it worth while to draw a set's lines in two parts? Not where few lie behind each other. */
+/* Is it worth while to draw a set's lines in parts? Not where few lie behind each other. */
 static int lao__parted(const lao__view *view, const lao_frame *frame, uint32_t set,
                        const float *values) {
     const int trail = (int)values[LAO_SETTING_ID_trail];
@@ -4752,7 +4769,7 @@ static int lao__parted(const lao__view *view, const lao_frame *frame, uint32_t s
     uint32_t i;
     for (i = 0; i < draw->chunk_count; i++) {
         segments += draw->chunks[i].count;
-        rest += draw->chunks[i].count - draw->chunks[i].part;
+        rest += draw->chunks[i].count - draw->chunks[i].ends[0];
     }
     for (i = 0; i < frame->import_count; i++) { /* a G-buffer of the host's: nothing is drawn */
         const char *image = frame->imports[i].image;
@@ -4789,7 +4806,7 @@ static lao_result lao__set_resolve(lao_context *context, lao__view *view, const 
         memcpy(block, fresh, module->setting_count * sizeof *fresh);
         if (m == 0) { /* the plan follows what is done */
             view->draws[set].parted = lao__parted(view, frame, set, fresh);
-            fresh[LAO_SETTING_ID_cull_hidden] = view->draws[set].parted ? 1.0f : 0.0f;
+            fresh[LAO_SETTING_ID_cull_hidden] = view->draws[set].parted ? LAO_PARTS - 1.0f : 0.0f;
         }
         for (i = 0; i < module->setting_count; i++) {
             *structural |= module->settings[i].structural && fresh[i] != values[first + i];
@@ -5133,7 +5150,7 @@ static lao_result lao__frame_sets(lao_context *context, lao__view *view, const l
 
 uint32_t lao_step_draws(const lao_execution *execution, const lao_plan_step *step,
                         const lao_chunk **chunks) {
-    static const lao_chunk nothing = {{NULL}, 0, 0, NULL, 0};
+    static const lao_chunk nothing = {{NULL}, 0, {0}, NULL, 0};
     const lao_draw *draw = &execution->draws[step->set];
     switch (step->row->kind) {
     case LAO_PASS_DRAW_LINES:
@@ -5161,10 +5178,12 @@ static int lao__group_seen(const lao_group *group, const lao_window *window) {
 }
 
 static void lao__range_part(lao_range *range, const lao_draw *draw, const lao_chunk *chunk,
-                            lao_pass_kind kind) {
-    const uint32_t part = draw->parted ? chunk->part : chunk->count;
-    range->first = kind == LAO_PASS_DRAW_LINES_REST ? part : 0;
-    range->count = kind == LAO_PASS_DRAW_LINES_FIRST ? part : chunk->count - range->first;
+                            const lao_plan_step *step) {
+    const lao_pass_kind kind = step->row->kind;
+    const uint32_t part = kind == LAO_PASS_DRAW_LINES_REST ? step->iteration + 1 : 0;
+    const int whole = kind == LAO_PASS_DRAW_LINES || !draw->parted;
+    range->first = part > 0 ? chunk->ends[part - 1] : 0;
+    range->count = (whole ? chunk->count : chunk->ends[part]) - range->first;
 }
 
 int lao_step_range(const lao_execution *execution, const lao_plan_step *step,
@@ -5177,7 +5196,7 @@ int lao_step_range(const lao_execution *execution, const lao_plan_step *step,
         ordered |= step->reads[i] == LAO_READ_BUFFER + LAO__BUFFER_ORDER;
     }
     if (!ordered || !window->limited || !groups) {
-        lao__range_part(range, &execution->draws[step->set], chunk, step->row->kind);
+        lao__range_part(range, &execution->draws[step->set], chunk, step);
         return range->next++ == 0 && range->count > 0;
     }
     while (g < chunk->group_count && !lao__group_seen(&groups[g], window)) {

@@ -1270,7 +1270,8 @@ static lao_result lao__gl_view_make(lao__gl *gl, lao__gl_view *view, const lao_p
             step->read_count > view->unit_count ? step->read_count : view->unit_count;
         result = lao__gl_framebuffers_make(gl, view, plan, i);
         if (!result && !shaders[step->shader])
-            result = lao__gl_fail(gl->host, LAO_LOG_SHADER_COMPILE, "%s", step->row->shader);
+            result =
+                lao__gl_fail(gl->host, LAO_LOG_SHADER_COMPILE, LAO_NO_SHADER, step->row->shader);
         if (!result)
             result = lao__gl_program_get(gl, shaders[step->shader], step->constants,
                                          &view->steps[i].program);

@@ -765,14 +765,17 @@ static lao_result lao__vk_program_make(lao__vk *vk, uint32_t index, const lao_sh
     lao__vk_program *program = &vk->programs[index], made;
     VkDescriptorSetLayoutBinding bindings[2 + LAO_MAX_READS];
     VkPushConstantRange step;
+    char text[256];
     uint32_t i;
     lao_result result;
     LAO__VK_STRUCT(VkDescriptorSetLayoutCreateInfo, set, DESCRIPTOR_SET_LAYOUT_CREATE_INFO);
     LAO__VK_STRUCT(VkPipelineLayoutCreateInfo, layout, PIPELINE_LAYOUT_CREATE_INFO);
     if (program->shader)
         return LAO_OK;
-    if (!shader || !shader->fragment.words || (!shader->vertex.words && !vk->fullscreen))
-        return lao__vk_fail(vk, LAO_LOG_SHADER_COMPILE, vk->host->graph->shader_names[index]);
+    if (!shader || !shader->fragment.words || (!shader->vertex.words && !vk->fullscreen)) {
+        snprintf(text, sizeof text, LAO_NO_SHADER, vk->host->graph->shader_names[index]);
+        return lao__vk_fail(vk, LAO_LOG_SHADER_COMPILE, text);
+    }
     if (shader->texture_count > lao__vk_least(vk->units, LAO_MAX_READS))
         return lao__vk_fail(vk, LAO_LOG_UNITS, shader->name);
     memset(&made, 0, sizeof made);

@@ -24,6 +24,9 @@
        ...
        sdv_layout_free(&layout); sdv_reduced_free(&reduced); sdv_tree_free(&tree);
 
+   FILES  lineao.h sdfvessel.h. To draw with sdv_module(): also a backend (see lineao.h) and
+   sdfvessel_shaders.h, beside lineao_shaders.h.
+
    CONFIGURATION (define before including)
        SDFVESSEL_IMPLEMENTATION   the function bodies, in one translation unit
        SDV_API                    linkage of the public functions (default: extern)
@@ -152,8 +155,10 @@ typedef struct sdv_tree_desc {
    of the nodes' radii, with the amplitude added; all other functions than those that trace and
    shade, distances to targets among them, know the round cones alone.
    - SDV_SECTION_RATIO: the shorter over the longer axis of elliptic cross sections, 0.1 .. 1; the
-   node's radius is the longer one. SDV_SECTION_AXIS: direction of the shorter one (3 components,
-   world; none: z). A cone has one section, the mean of its nodes'.
+   node's radius is the longer one. SDV_SECTION_AXIS: direction of the shorter one, of either sign
+   (3 components, world; none: z); what of it is along the vessel does not count. Between two nodes
+   the section changes from one's to the other's, so that surfaces meet at nodes. The faster it
+   turns or flattens on the way, the shorter are the steps of rays there.
    - SDV_UNCERTAINTY: mm, up to 3/4 of the radius: by so much, in and out, noise moves the surface.
    What is no number counts as 1 and 0. */
 #define SDV_SECTION_RATIO "section_ratio"
@@ -349,11 +354,12 @@ typedef struct sdv_grid {
     float cell;    /* mm */
     uint32_t size[3];
     uint32_t cell_count, id_count, cone_count;
-    lao_v4 *cells; /* cell_count */
-    float *ids;    /* id_count: numbers of cones */
-    lao_v4 *cones; /* 2 per cone: centre and radius of both ends (parent, child) */
-    lao_v4 *forms; /* behind the cones; 2 per cone: section and bump of the shared text; NULL:
-                      all are round */
+    lao_v4 *cells;    /* cell_count */
+    float *ids;       /* id_count: numbers of cones */
+    lao_v4 *cones;    /* 2 per cone: centre and radius of both ends (parent, child) */
+    lao_v4 *forms;    /* behind the cones; 3 per cone, an sdv_form of the shared text; NULL: all are
+                         round */
+    lao_v4 *sections; /* private: per node, where there are forms: its section */
     uint32_t *cone_nodes; /* 2 per cone: the nodes */
     uint32_t *layer;      /* private: per cell x + 65536 y of the nearest occupied one at its z */
     uint32_t *occupied;   /* private: a bit per cell that lists something, words along x */
@@ -713,6 +719,9 @@ SDV_API void sdv_object_free(sdv_object *object);
    shared text From here to SDV_SHARED_END the text is C99, C++11 and GLSL at once, behind
    lineao.h's (same rules: see there). */
 /* SDV_SHARED_BEGIN */
+LAO_FN lao_v3 sdv_xyz(lao_v4 v) {
+    return lao_v3_make(v.x, v.y, v.z);
+}
 /* ---- round cones (L19 3.2 with METHODS 4): a, b = centre and radius of the two ends, mm */
 /* A point seen from a cone: the balls between a and b reach nearest to it from `place`. */
 struct sdv_cone_point {
@@ -730,7 +739,7 @@ typedef struct sdv_cone_point sdv_cone_point;
    is the nearest. */
 LAO_FN sdv_cone_point sdv_cone_point_make(lao_v3 p, lao_v4 a, lao_v4 b) {
     sdv_cone_point c;
-    lao_v3 q = lao_v3_sub(p, lao_v3_make(a.x, a.y, a.z));
+    lao_v3 q = lao_v3_sub(p, sdv_xyz(a));
     c.axis = lao_v3_make(b.x - a.x, b.y - a.y, b.z - a.z);
     LAO_EXACT float s = lao_sqrt(lao_v3_dot(c.axis, c.axis));
     LAO_EXACT float d = a.w - b.w;
@@ -752,6 +761,11 @@ LAO_FN sdv_cone_point sdv_cone_point_make(lao_v3 p, lao_v4 a, lao_v4 b) {
     c.radial = radial;
     c.distance = distance;
     return c;
+}
+/* Radius of the ball that is nearest to the point. */
+LAO_FN float sdv_cone_ball_radius(sdv_cone_point c, lao_v4 a, lao_v4 b) {
+    LAO_EXACT float radius = a.w + c.place * (b.w - a.w);
+    return radius;
 }
 /* Signed distance in mm, exact outside and inside; one ball when it holds the other (Eqs. 1-3,
    corrected). */
@@ -945,8 +959,8 @@ LAO_FN sdv_near sdv_near_add(sdv_near n, lao_v3 p, lao_v3 direction, lao_v4 a, l
 /* Least distance of the whole line to the cone (x, mm; negative: it passes through it) and where
    (y): seen along the line, the cone is a flat round cone and the line a point. */
 LAO_FN lao_v2 sdv_line_nearest(lao_v3 origin, lao_v3 direction, lao_v4 a, lao_v4 b) {
-    lao_v3 qa = lao_v3_sub(lao_v3_make(a.x, a.y, a.z), origin);
-    lao_v3 qb = lao_v3_sub(lao_v3_make(b.x, b.y, b.z), origin);
+    lao_v3 qa = lao_v3_sub(sdv_xyz(a), origin);
+    lao_v3 qb = lao_v3_sub(sdv_xyz(b), origin);
     LAO_EXACT float ta = lao_v3_dot(qa, direction);
     LAO_EXACT float tb = lao_v3_dot(qb, direction);
     lao_v3 fa = lao_v3_along(qa, direction, -ta);
@@ -1213,9 +1227,15 @@ LAO_FN lao_v4 sdv_lattice_value(lao_v3 part, lao_v4 low, lao_v4 high) {
     return lao_v4_make(gx, gy, gz, value);
 }
 /* ---- forms: what the cone of a tree with such attributes is instead of round and smooth. Its
-   surface stays inside the round cone a, b. section: unit vector of the shorter axis of its cross
-   sections, a right angle to the cone's, and the ratio of the two axes; bump: amplitude at a and b,
-   mm; the most that sdv_form_level may rise per mm; bumps per mm. */
+   surface stays inside the round cone a, b. */
+/* a, b: section at that end: unit vector of the shorter axis, and what the ratio's inverse has over
+   1; bump: amplitude at a and b, mm; the most that sdv_form_level may rise per mm; bumps per mm. */
+struct sdv_form {
+    lao_v4 a, b, bump;
+};
+#ifndef LAO_GLSL
+typedef struct sdv_form sdv_form;
+#endif
 /* Of a corner of the lattice, in [-1, 1). */
 LAO_FN float sdv_noise_corner(lao_uint x, lao_uint y, lao_uint z) {
     LAO_EXACT float r = 2.0f * lao_unit_float(lao_hash(x + lao_hash(y + lao_hash(z)))) - 1.0f;
@@ -1252,76 +1272,118 @@ LAO_FN lao_v4 sdv_noise(lao_v3 p) {
     LAO_EXACT float gz = n.z * w.y;
     return lao_v4_make(gx, gy, gz, n.w);
 }
-/* Space stretched along the shorter axis, so that cross sections are circles. */
-LAO_FN lao_v3 sdv_form_stretched(lao_v3 v, lao_v4 section) {
-    lao_v3 minor = lao_v3_make(section.x, section.y, section.z);
-    LAO_EXACT float by = lao_v3_dot(v, minor) * (1.0f / section.w - 1.0f);
-    return lao_v3_along(v, minor, by);
+/* The lower of the ratios at both ends. */
+LAO_FN float sdv_form_ratio(sdv_form form) {
+    LAO_EXACT float ratio = 1.0f / (1.0f + lao_max(form.a.w, form.b.w));
+    return ratio;
+}
+/* Where v, from a, is along the axis of a cone: 0 at a, 1 at b, not cut off. */
+LAO_FN float sdv_form_foot(lao_v3 v, lao_v3 axis) {
+    LAO_EXACT float foot = lao_v3_dot(v, axis) / lao_max(lao_v3_dot(axis, axis), 1.0e-30f);
+    return foot;
+}
+/* By how much u . v grows where space is stretched by a section. */
+LAO_FN float sdv_section_stretch(lao_v4 section, lao_v3 u, lao_v3 v) {
+    lao_v3 m = sdv_xyz(section);
+    LAO_EXACT float by = section.w * lao_v3_dot(m, u) * lao_v3_dot(m, v);
+    return by;
+}
+LAO_FN lao_v3 sdv_section_add(lao_v3 to, lao_v3 v, lao_v4 section, float part) {
+    lao_v3 m = sdv_xyz(section);
+    LAO_EXACT float by = part * section.w * lao_v3_dot(v, m);
+    return lao_v3_along(to, m, by);
+}
+/* Space stretched along the shorter axes, as it is at `foot`: there the ellipsoid of the section is
+   a ball. */
+LAO_FN lao_v3 sdv_form_stretched(lao_v3 v, sdv_form form, float foot) {
+    LAO_EXACT float t = lao_clamp01(foot);
+    return sdv_section_add(sdv_section_add(v, v, form.a, 1.0f - t), v, form.b, t);
+}
+/* The other end of the cone whose space is stretched around a. */
+LAO_FN lao_v4 sdv_form_end(lao_v4 a, lao_v3 axis, float radius, sdv_form form, float foot) {
+    lao_v3 end = lao_v3_add(sdv_xyz(a), sdv_form_stretched(axis, form, foot));
+    return lao_v4_make(end.x, end.y, end.z, radius);
 }
 /* Below 0 inside the cone's form, 0 on its surface (w), and the gradient (xyz): the distance in
    stretched space and the noise, inwards from the round cone. */
-LAO_FN lao_v4 sdv_form_level(lao_v3 p, lao_v4 a, lao_v4 b, lao_v4 section, lao_v4 bump) {
-    lao_v3 from = lao_v3_make(a.x, a.y, a.z);
-    lao_v3 q = lao_v3_add(from, sdv_form_stretched(lao_v3_sub(p, from), section));
-    sdv_cone_point c = sdv_cone_point_make(q, a, b);
-    lao_v3 g = sdv_round_cone_gradient(q, a, b);
-    LAO_EXACT float amplitude = bump.x + c.place * (bump.y - bump.x);
+LAO_FN lao_v4 sdv_form_level(lao_v3 p, lao_v4 a, lao_v4 b, sdv_form form) {
+    lao_v3 axis = lao_v3_sub(sdv_xyz(b), sdv_xyz(a));
+    lao_v3 v = lao_v3_sub(p, sdv_xyz(a));
+    float foot = sdv_form_foot(v, axis);
+    lao_v4 end = sdv_form_end(a, axis, b.w, form, foot);
+    lao_v3 q = lao_v3_add(sdv_xyz(a), sdv_form_stretched(v, form, foot));
+    sdv_cone_point c = sdv_cone_point_make(q, a, end);
+    lao_v3 g = sdv_round_cone_gradient(q, a, end);
+    LAO_EXACT float more = form.bump.y - form.bump.x;
+    LAO_EXACT float amplitude = form.bump.x + lao_clamp01(foot) * more;
     lao_v4 noise = lao_v4_make(0.0f, 0.0f, 0.0f, 0.0f);
     if (amplitude > 0.0f) {
-        noise = sdv_noise(lao_v3_scale(p, bump.w));
+        noise = sdv_noise(lao_v3_scale(p, form.bump.w));
     }
     LAO_EXACT float lift = 1.0f + noise.w;
-    LAO_EXACT float level = section.w * (c.distance + amplitude * lift);
-    if (c.place > 0.0f && c.place < 1.0f) { /* the amplitude changes along the cone */
-        LAO_EXACT float d = a.w - b.w;
-        LAO_EXACT float change = (bump.y - bump.x) * lift / (lao_v3_dot(c.axis, c.axis) - d * d);
-        g = lao_v3_along(g, lao_v3_along(c.axis, g, -d), change);
+    LAO_EXACT float level = c.distance + amplitude * lift;
+    LAO_EXACT float steep = amplitude * form.bump.w;
+    lao_v3 slope = lao_v3_along(sdv_form_stretched(g, form, foot), sdv_xyz(noise), steep);
+    if (foot > 0.0f && foot < 1.0f) { /* section and amplitude change along the cone */
+        lao_v3 u = lao_v3_along(v, axis, -c.place);
+        LAO_EXACT float change =
+            sdv_section_stretch(form.b, u, g) - sdv_section_stretch(form.a, u, g) + more * lift;
+        slope = lao_v3_along(slope, axis, change / lao_v3_dot(axis, axis));
     }
-    g = sdv_form_stretched(g, section);
-    LAO_EXACT float steep = amplitude * bump.w;
-    g = lao_v3_scale(lao_v3_along(g, lao_v3_make(noise.x, noise.y, noise.z), steep), section.w);
-    return lao_v4_make(g.x, g.y, g.z, level);
+    return lao_v4_make(slope.x, slope.y, slope.z, level);
 }
 /* Outward normal (xyz), and the distance as far as level and gradient tell it (w). */
-LAO_FN lao_v4 sdv_form_estimate(lao_v3 p, lao_v4 a, lao_v4 b, lao_v4 section, lao_v4 bump) {
-    lao_v4 level = sdv_form_level(p, a, b, section, bump);
-    lao_v3 g = lao_v3_make(level.x, level.y, level.z);
+LAO_FN lao_v4 sdv_form_estimate(lao_v3 p, lao_v4 a, lao_v4 b, sdv_form form) {
+    lao_v4 level = sdv_form_level(p, a, b, form);
+    lao_v3 g = sdv_xyz(level);
     LAO_EXACT float steep = lao_sqrt(lao_v3_dot(g, g));
     LAO_EXACT float distance = level.w / lao_max(steep, 0.1f);
-    g = lao_v3_unit(g, sdv_round_cone_gradient(p, a, b));
+    g = lao_v3_unit(g, lao_v3_make(0.0f, 0.0f, 1.0f));
     return lao_v4_make(g.x, g.y, g.z, distance);
 }
+/* Where the level is less than this it rises by no more than form.bump.z per mm. */
+LAO_FN float sdv_form_most(lao_v4 a, lao_v4 b, sdv_form form) {
+    LAO_EXACT float most = 0.25f * lao_max(a.w, b.w) * (1.0f + lao_max(form.a.w, form.b.w));
+    return most;
+}
 /* A bound of the distance that is 0 where that is, and 1-Lipschitz; round: sdv_round_cone. */
-LAO_FN float sdv_form_bound(float round, lao_v4 level, lao_v4 bump) {
-    LAO_EXACT float bound = level.w / bump.z;
+LAO_FN float sdv_form_bound(float round, lao_v4 level, lao_v4 a, lao_v4 b, sdv_form form) {
+    LAO_EXACT float bound = lao_min(level.w, sdv_form_most(a, b, form)) / form.bump.z;
     return lao_max(round, bound);
 }
-/* sdv_near_add for a form. The ray meets the round cone first. */
-LAO_FN sdv_near sdv_near_form(sdv_near n, lao_v3 p, lao_v3 direction, lao_v4 a, lao_v4 b,
-                              lao_v4 section, lao_v4 bump, float cone) {
+/* Does the form of a cone matter to a sample? along: sdv_cone_along. The ray meets the round cone
+   first. */
+LAO_FN bool sdv_near_asks(sdv_near n, lao_v2 along) {
+    return along.x < n.distance || along.y < n.advance;
+}
+/* sdv_near_add for a form that matters. */
+LAO_FN sdv_near sdv_near_form(sdv_near n, lao_v2 along, lao_v3 p, lao_v4 a, lao_v4 b, sdv_form form,
+                              float cone) {
     sdv_near r = n;
-    lao_v2 along = sdv_cone_along(p, direction, a, b);
-    if (along.x < n.distance || along.y < n.advance) {
-        float d = sdv_form_bound(along.x, sdv_form_level(p, a, b, section, bump), bump);
-        if (d < n.distance) {
-            r.distance = d;
-            r.cone = cone;
-        }
-        r.advance = lao_min(n.advance, lao_max(along.y, d));
+    float d = sdv_form_bound(along.x, sdv_form_level(p, a, b, form), a, b, form);
+    if (d < n.distance) {
+        r.distance = d;
+        r.cone = cone;
     }
+    r.advance = lao_min(n.advance, lao_max(along.y, d));
     return r;
 }
-/* sdv_minimum_add for a form: where the ray is nearest to the cone without bumps. */
+/* sdv_minimum_add for a form: where the ray is nearest to the cone without bumps, with the section
+   of where it is nearest to the round one. */
 LAO_FN sdv_minimum sdv_minimum_form(sdv_minimum r, lao_v3 origin, lao_v3 direction, lao_v4 a,
-                                    lao_v4 b, lao_v4 section, lao_v4 bump, float low, float high) {
+                                    lao_v4 b, sdv_form form, float low, float high) {
     sdv_minimum n = r;
-    lao_v3 from = lao_v3_make(a.x, a.y, a.z);
-    lao_v3 o = lao_v3_add(from, sdv_form_stretched(lao_v3_sub(origin, from), section));
-    lao_v3 d = sdv_form_stretched(direction, section);
+    lao_v3 from = sdv_xyz(a);
+    lao_v3 axis = lao_v3_sub(sdv_xyz(b), from);
+    lao_v2 round = sdv_line_nearest(origin, direction, a, b);
+    float foot = sdv_form_foot(lao_v3_sub(lao_v3_along(origin, direction, round.y), from), axis);
+    lao_v3 o = lao_v3_add(from, sdv_form_stretched(lao_v3_sub(origin, from), form, foot));
+    lao_v3 d = sdv_form_stretched(direction, form, foot);
     LAO_EXACT float shorter = 1.0f / lao_sqrt(lao_v3_dot(d, d));
-    LAO_EXACT float place = sdv_line_nearest(o, lao_v3_scale(d, shorter), a, b).y * shorter;
+    lao_v4 end = sdv_form_end(a, axis, b.w, form, foot);
+    LAO_EXACT float place = sdv_line_nearest(o, lao_v3_scale(d, shorter), a, end).y * shorter;
     LAO_EXACT float t = lao_min(lao_max(place, low), high);
-    float distance = sdv_form_estimate(lao_v3_along(origin, direction, t), a, b, section, bump).w;
+    float distance = sdv_form_estimate(lao_v3_along(origin, direction, t), a, b, form).w;
     n.last = r.cone;
     if (distance < r.d) {
         n.d = distance;
@@ -1362,7 +1424,7 @@ LAO_FN float sdv_shape_distance(lao_v3 p, sdv_shape shape) {
         return d;
     }
     if (shape.kind == SDV_SHAPE_PLANE) {
-        LAO_EXACT float d = lao_v3_dot(p, lao_v3_make(shape.a.x, shape.a.y, shape.a.z)) - shape.a.w;
+        LAO_EXACT float d = lao_v3_dot(p, sdv_xyz(shape.a)) - shape.a.w;
         return d;
     }
     if (shape.kind == SDV_SHAPE_BOX) {
@@ -1372,7 +1434,7 @@ LAO_FN float sdv_shape_distance(lao_v3 p, sdv_shape shape) {
             lao_sqrt(lao_v3_dot(o, o)) + lao_min(lao_max(q.x, lao_max(q.y, q.z)), 0.0f);
         return d;
     }
-    lao_v3 q = lao_v3_sub(p, lao_v3_make(shape.a.x, shape.a.y, shape.a.z));
+    lao_v3 q = lao_v3_sub(p, sdv_xyz(shape.a));
     LAO_EXACT float d = lao_sqrt(lao_v3_dot(q, q)) - shape.a.w;
     return d;
 }
@@ -1389,7 +1451,7 @@ LAO_FN float sdv_shape_estimate(lao_v3 p, sdv_shape shape) {
     return sdv_shape_distance(p, shape);
 }
 LAO_FN lao_v3 sdv_shape_gradient(lao_v3 p, sdv_shape shape) {
-    lao_v3 a = lao_v3_make(shape.a.x, shape.a.y, shape.a.z);
+    lao_v3 a = sdv_xyz(shape.a);
     lao_v3 up = lao_v3_make(0.0f, 0.0f, 1.0f);
     if (shape.kind == SDV_SHAPE_PLANE) {
         return a;
@@ -1449,7 +1511,7 @@ LAO_FN sdv_solid sdv_solid_add(sdv_solid s, float distance, lao_int operation, l
 #define SDV_LEAF_CONES 4
 /* Could a ball hold something as near as `least`? The margin is for rounding. */
 LAO_FN bool sdv_ball_reaches(lao_v3 p, lao_v4 ball, float least) {
-    lao_v3 q = lao_v3_sub(p, lao_v3_make(ball.x, ball.y, ball.z));
+    lao_v3 q = lao_v3_sub(p, sdv_xyz(ball));
     LAO_EXACT float apart = lao_sqrt(lao_v3_dot(q, q));
     LAO_EXACT float nearest = 0.999999f * apart - ball.w;
     return nearest <= least;
@@ -1617,6 +1679,12 @@ LAO_FN float sdv_open_place(float reach, lao_int i) {
 LAO_FN float sdv_open_weight(lao_int i) {
     return lao_bits_float(LAO_U(127 - i) << 23u); /* 2^-i */
 }
+/* From within a vessel it looks no farther than the middle, beyond which the field falls again:
+   `room`, radius of the nearest cone at the place, whose distance is `distance`. */
+LAO_FN float sdv_open_reach(float reach, float room, float distance, float cell) {
+    float within = lao_min(reach, lao_max(room, sdv_hit_distance(cell)));
+    return lao_abs(distance) < cell ? within : reach;
+}
 /* What the sample's ball lacks of free room, as part of it. */
 LAO_FN float sdv_open_add(float closed, float distance, float place, lao_int i) {
     LAO_EXACT float lack = lao_clamp01((place - distance) / place);
@@ -1655,7 +1723,7 @@ LAO_FN bool sdv_in_triangle(lao_v3 p, lao_v3 u, lao_v3 v, lao_v3 w, lao_v3 n) {
 LAO_FN float sdv_triangle_ball(float least, lao_v3 u, lao_v3 v, lao_v3 w, lao_v3 n, lao_v4 a,
                                lao_v4 b, float s) {
     lao_v3 ab = lao_v3_make(b.x - a.x, b.y - a.y, b.z - a.z);
-    lao_v3 c = lao_v3_along(lao_v3_make(a.x, a.y, a.z), ab, s);
+    lao_v3 c = lao_v3_along(sdv_xyz(a), ab, s);
     LAO_EXACT float height = lao_v3_dot(lao_v3_sub(c, u), n);
     lao_v3 foot = lao_v3_along(c, n, -height);
     if (!sdv_in_triangle(foot, u, v, w, n)) {
@@ -1674,8 +1742,8 @@ LAO_FN float sdv_triangle_cone(lao_v3 u, lao_v3 v, lao_v3 w, lao_v4 a, lao_v4 b)
     if (!(lao_v3_dot(n, n) > 0.5f)) {
         return least;
     }
-    LAO_EXACT float ha = lao_v3_dot(lao_v3_sub(lao_v3_make(a.x, a.y, a.z), u), n);
-    LAO_EXACT float hb = lao_v3_dot(lao_v3_sub(lao_v3_make(b.x, b.y, b.z), u), n);
+    LAO_EXACT float ha = lao_v3_dot(lao_v3_sub(sdv_xyz(a), u), n);
+    LAO_EXACT float hb = lao_v3_dot(lao_v3_sub(sdv_xyz(b), u), n);
     least = sdv_triangle_ball(least, u, v, w, n, a, b, 0.0f);
     least = sdv_triangle_ball(least, u, v, w, n, a, b, 1.0f);
     if ((ha < 0.0f) != (hb < 0.0f)) {
@@ -1836,6 +1904,11 @@ LAO_FN lao_v3 sdv_cone_color(lao_v3 p, lao_v4 a, lao_v4 b, lao_v3 color_a, lao_v
     LAO_EXACT float z = color_a.z + t * (color_b.z - color_a.z);
     return lao_v3_make(x, y, z);
 }
+/* Radius of the cone at the place, mm. */
+LAO_FN float sdv_cone_radius(lao_v3 p, lao_v4 a, lao_v4 b) {
+    LAO_EXACT float r = a.w + sdv_cone_place(p, a, b) * (b.w - a.w);
+    return r;
+}
 /* Is the place marked? alpha_a, alpha_b: of the colours of the cone's ends. */
 LAO_FN bool sdv_is_marked(lao_v3 p, lao_v4 a, lao_v4 b, float alpha_a, float alpha_b) {
     LAO_EXACT float alpha = alpha_a + sdv_cone_place(p, a, b) * (alpha_b - alpha_a);
@@ -1844,8 +1917,7 @@ LAO_FN bool sdv_is_marked(lao_v3 p, lao_v4 a, lao_v4 b, float alpha_a, float alp
 /* How near to a place of the surface another cone takes part in its shading normal (x, mm: within
    what the cell's list is sure to hold), and the radius there (y). a, b: of the cone at p. */
 LAO_FN lao_v2 sdv_joint_reach(lao_v3 p, lao_v4 a, lao_v4 b, float smoothness, float cell) {
-    sdv_cone_point c = sdv_cone_point_make(p, a, b);
-    LAO_EXACT float radius = a.w + c.place * (b.w - a.w);
+    float radius = sdv_cone_radius(p, a, b);
     LAO_EXACT float reach = smoothness * radius;
     return lao_v2_make(lao_min(reach, sdv_near_reach(cell)), radius);
 }
@@ -1882,6 +1954,12 @@ LAO_FN lao_v3 sdv_joint_normal(lao_v3 sum, lao_v3 normal) {
 LAO_FN float sdv_dimmed(float light, float dark, float strength) {
     LAO_EXACT float r = light * lao_clamp01(1.0f - strength * dark);
     return r;
+}
+/* Ambient and diffuse part. From within a vessel one sees walls at grazing angles, which light that
+   walls throw at each other fills: half of the diffuse part comes from everywhere. */
+LAO_FN lao_v2 sdv_light_parts(float ambient, float diffuse, bool inside) {
+    LAO_EXACT float moved = inside ? 0.5f * diffuse : 0.0f;
+    return lao_v2_make(ambient + moved, diffuse - moved);
 }
 /* Phong with a head light; n and l (towards the light) are unit. `light`: what reaches the place of
    all of it. */
@@ -2049,8 +2127,8 @@ LAO_FN lao_v3 sdv_tangent(lao_v3 v, lao_v3 n) {
 /* A direction of the screen (of sdv_tensor_axis) in the tangent plane of normal n (METHODS 7.2);
    else `otherwise` there, else any. */
 LAO_FN lao_v3 sdv_lift(lao_m4 world, lao_v3 axis, lao_v3 n, lao_v3 otherwise) {
-    lao_v3 right = lao_v3_make(world.x.x, world.x.y, world.x.z);
-    lao_v3 up = lao_v3_make(world.y.x, world.y.y, world.y.z);
+    lao_v3 right = sdv_xyz(world.x);
+    lao_v3 up = sdv_xyz(world.y);
     lao_v3 z = sdv_tangent(lao_v3_along(lao_v3_scale(right, axis.x), up, axis.y), n);
     if (!(lao_v3_dot(z, z) > 0.5f)) {
         z = sdv_tangent(otherwise, n);
@@ -2154,7 +2232,7 @@ LAO_FN float sdv_phase_weight(lao_v3 p, lao_v3 q, float covered, float stencil, 
 LAO_FN sdv_phases sdv_phases_hear(sdv_phases s, lao_v3 p, lao_v3 along, lao_v3 across, lao_v4 q,
                                   lao_v3 along_other, lao_v3 across_other, lao_v2 phase,
                                   float stencil, float frequency, float pixel) {
-    lao_v3 place = lao_v3_make(q.x, q.y, q.z);
+    lao_v3 place = sdv_xyz(q);
     lao_v3 apart = lao_v3_sub(p, place);
     return sdv_phases_add(s, sdv_phase_from(along, along_other, phase.x, apart, frequency),
                           sdv_phase_from(across, across_other, phase.y, apart, frequency),
@@ -2282,8 +2360,42 @@ LAO_FN float sdv_lines_ink(float x, float dark, float wide) {
         (sdv_lines_until(x + 0.5f * w, dark) - sdv_lines_until(x - 0.5f * w, dark)) / w;
     return lao_clamp01(r);
 }
-/* A disc in the middle of the period's cell; its soft edge and what is too small for a pixel keep
-   their area. dark <= pi / 4. */
+/* On thin vessels strokes and dots are finer: as many times as a period is longer than the vessel
+   is wide, or than so many pixels. 1: as they are. radius, period, pixel: mm. */
+#define SDV_INK_LEAST_PIXELS 5.0f
+LAO_FN float sdv_ink_finer(float radius, float period, float pixel) {
+    LAO_EXACT float room = lao_max(1.5f * radius, SDV_INK_LEAST_PIXELS * pixel);
+    LAO_EXACT float r = lao_min(lao_max(period / room, 1.0f), 32.0f);
+    return r;
+}
+/* How many cells of the finest lattice that is whole lie along a period (x: 1, 2, 4, ...), and how
+   far strokes and dots between its own have grown (y, 0 .. 1). */
+LAO_FN lao_v2 sdv_ink_lattice(float finer) {
+    float cells = 1.0f;
+    for (lao_int i = 0; i < 5; i++) {
+        cells = finer >= 2.0f * cells ? 2.0f * cells : cells;
+    }
+    LAO_EXACT float grown = finer / cells - 1.0f;
+    return lao_v2_make(cells, lao_max(grown, 0.0f));
+}
+/* How far from the middle of its cell a place is, 0 .. 1/2, where cells are `times` as fine. */
+LAO_FN float sdv_finer_cell(float a, float times) {
+    LAO_EXACT float x = lao_abs(a) * times;
+    LAO_EXACT float r = lao_abs(x - lao_floor(x + 0.5f));
+    return r;
+}
+/* Lines and, between them, those that grow while they thin: the mean stays `dark`. x: 0 .. 1/2. */
+LAO_FN float sdv_growing_lines(float x, float dark, float wide, float grown) {
+    LAO_EXACT float between = 0.5f * grown * dark;
+    float ink = sdv_lines_ink(x, dark - between, wide);
+    if (grown > 0.0f) {
+        LAO_EXACT float both = ink + sdv_lines_ink(0.5f - x, between, wide);
+        ink = lao_clamp01(both);
+    }
+    return ink;
+}
+/* A disc in the middle of a cell; its soft edge and what is smaller than a pixel keep their area.
+   dark <= pi / 4. */
 LAO_FN float sdv_dot_ink(float a, float b, float dark, float wide_a, float wide_b) {
     LAO_EXACT float r = lao_sqrt(a * a + b * b);
     LAO_EXACT float wa = a * wide_a;
@@ -2295,41 +2407,57 @@ LAO_FN float sdv_dot_ink(float a, float b, float dark, float wide_a, float wide_
     LAO_EXACT float radius = lao_sqrt(lao_max(squared, least));
     LAO_EXACT float share = lao_min(dark / (1.04719755f * w * w), 1.0f);
     LAO_EXACT float ink = lao_clamp01(0.5f + (radius - r) / w) * (squared < least ? share : 1.0f);
-    LAO_EXACT float blur = lao_clamp01(5.0f * mean - 0.75f); /* cells too small to be seen */
-    LAO_EXACT float result = ink + blur * (dark - ink);
-    return result;
+    return ink;
 }
-/* Dots; where they would touch, white ones between them. a, b in [-1/2, 1/2]. */
-LAO_FN float sdv_stipple_ink(float a, float b, float dark, float wide_a, float wide_b) {
-    LAO_EXACT float widest = 0.5f - 0.25f * (wide_a + wide_b);
-    LAO_EXACT float touch = 3.14159265f * widest * widest;
-    if (dark <= 0.5f || (dark <= touch && widest > 0.0f)) {
-        return sdv_dot_ink(a, b, dark, wide_a, wide_b);
+/* Dots and, between them, three times as many that grow to their size while they shrink; dark <=
+   1/2, so that none touch. Cells that are too small to be seen turn grey. */
+LAO_FN float sdv_growing_dots(float a, float b, float dark, float wide_a, float wide_b,
+                              float grown) {
+    LAO_EXACT float own = dark - 0.75f * grown * dark;
+    float ink = sdv_dot_ink(a, b, own, wide_a, wide_b);
+    if (grown > 0.0f && (a > 0.25f || b > 0.25f)) {
+        LAO_EXACT float both = ink + sdv_dot_ink(sdv_finer_cell(a, 2.0f), sdv_finer_cell(b, 2.0f),
+                                                 grown * dark, 2.0f * wide_a, 2.0f * wide_b);
+        ink = lao_clamp01(both);
     }
-    float x = a < 0.0f ? a + 0.5f : a - 0.5f;
-    float y = b < 0.0f ? b + 0.5f : b - 0.5f;
-    LAO_EXACT float r = 1.0f - sdv_dot_ink(x, y, 1.0f - dark, wide_a, wide_b);
+    LAO_EXACT float blur = lao_clamp01(2.5f * (wide_a + wide_b) * (1.0f + grown) - 0.75f);
+    LAO_EXACT float r = ink + blur * (dark - ink);
     return r;
 }
-LAO_FN float sdv_crosshatch_ink(float a, float b, float dark, float wide_a, float wide_b) {
-    LAO_EXACT float each = 1.0f - lao_sqrt(lao_max(1.0f - dark, 0.0f));
+/* Dots; above a half white ones, around the corners of cells. a, b: 0 .. 1/2. */
+LAO_FN float sdv_stipple_ink(float a, float b, float dark, float wide_a, float wide_b,
+                             float grown) {
+    if (dark <= 0.5f) {
+        return sdv_growing_dots(a, b, dark, wide_a, wide_b, grown);
+    }
     LAO_EXACT float r =
-        1.0f - (1.0f - sdv_lines_ink(a, each, wide_a)) * (1.0f - sdv_lines_ink(b, each, wide_b));
+        1.0f - sdv_growing_dots(0.5f - a, 0.5f - b, 1.0f - dark, wide_a, wide_b, grown);
     return r;
 }
-/* u, v: radians; even in both, as (-u, -v) is the same place seen along the other direction. */
+LAO_FN float sdv_crosshatch_ink(float a, float b, float dark, float wide_a, float wide_b,
+                                float grown) {
+    LAO_EXACT float each = 1.0f - lao_sqrt(lao_max(1.0f - dark, 0.0f));
+    LAO_EXACT float r = 1.0f - (1.0f - sdv_growing_lines(a, each, wide_a, grown)) *
+                                   (1.0f - sdv_growing_lines(b, each, wide_b, grown));
+    return r;
+}
+/* u, v: radians; even in both, as (-u, -v) is the same place seen along the other direction.
+   wide_u, wide_v: periods per pixel; finer: see sdv_ink_finer. */
 LAO_FN float sdv_style_ink(lao_int style, float u, float v, float darkness, float wide_u,
-                           float wide_v) {
-    LAO_EXACT float a = u / LAO_TURN;
-    LAO_EXACT float b = v / LAO_TURN;
+                           float wide_v, float finer) {
+    lao_v2 lattice = sdv_ink_lattice(finer);
+    float a = sdv_finer_cell(u / LAO_TURN, lattice.x);
+    float b = sdv_finer_cell(v / LAO_TURN, lattice.x);
+    LAO_EXACT float wide_a = wide_u * lattice.x;
+    LAO_EXACT float wide_b = wide_v * lattice.x;
     float dark = lao_clamp01(darkness);
     if (style == SDV_STYLE_STIPPLE || (style == SDV_STYLE_LAYERED && dark < 0.35f)) {
-        return sdv_stipple_ink(a, b, dark, wide_u, wide_v);
+        return sdv_stipple_ink(a, b, dark, wide_a, wide_b, lattice.y);
     }
     if (style == SDV_STYLE_CROSSHATCH || (style == SDV_STYLE_LAYERED && dark > 0.7f)) {
-        return sdv_crosshatch_ink(a, b, dark, wide_u, wide_v);
+        return sdv_crosshatch_ink(a, b, dark, wide_a, wide_b, lattice.y);
     }
-    return sdv_lines_ink(b, dark, wide_v);
+    return sdv_growing_lines(b, dark, wide_b, lattice.y);
 }
 /* Sample i of SDV_PATTERN_SAMPLES^2 over a pixel at (a, b), periods: which of n x n thresholds
    holds there. The pattern lies in half a period and is mirrored, as (u, v) and (-u, -v) are one
@@ -2356,7 +2484,7 @@ LAO_FN float sdv_pattern_ink(float inked, float dark, float wide_u, float wide_v
 /* White that a style's ink and a depth shadow's lines, which go the other way, leave of a pixel.
    pattern: ink of SDV_STYLE_PATTERN. */
 LAO_FN float sdv_style_paper(lao_int style, lao_v2 phase, float darkness, float shadow,
-                             float wide_u, float wide_v, float pattern) {
+                             float wide_u, float wide_v, float finer, float pattern) {
     LAO_EXACT float lines = sdv_lines_ink(phase.x / LAO_TURN, lao_clamp01(shadow), wide_u);
     LAO_EXACT float left = 1.0f - lines;
     if (style == SDV_STYLE_PLAIN || style == SDV_STYLE_SHADOW) {
@@ -2364,7 +2492,7 @@ LAO_FN float sdv_style_paper(lao_int style, lao_v2 phase, float darkness, float 
     }
     float ink = pattern;
     if (style != SDV_STYLE_PATTERN) {
-        ink = sdv_style_ink(style, phase.x, phase.y, darkness, wide_u, wide_v);
+        ink = sdv_style_ink(style, phase.x, phase.y, darkness, wide_u, wide_v, finer);
     }
     LAO_EXACT float r = left * (1.0f - ink);
     return r;
@@ -3989,20 +4117,31 @@ static lao_v3 sdv__minor(const float *axes, uint32_t node) {
     v = axes + 3 * (size_t)node;
     return lao_v3_unit(lao_v3_make(v[0], v[1], v[2]), z);
 }
-/* The mean of the nodes' sections, at a right angle to the cone. */
-static lao_v4 sdv__section(const sdv_tree *tree, const uint32_t *nodes, const lao_v4 *cone) {
+/* Of every node: its shorter axis, turned to a right angle to the mean of its cones, so that cones
+   that meet there have the same ellipsoid. */
+static void sdv__sections_fill(const sdv_tree *tree, sdv_grid *g) {
     const float *ratios = sdv__node_values(tree, SDV_SECTION_RATIO, 1);
     const float *axes = sdv__node_values(tree, SDV_SECTION_AXIS, 3);
-    lao_v3 axis = lao_v3_make(cone[1].x - cone[0].x, cone[1].y - cone[0].y, cone[1].z - cone[0].z);
-    lao_v3 m = sdv__minor(axes, nodes[0]), n = sdv__minor(axes, nodes[1]);
-    float ratio = 0.5f * (sdv__ratio(ratios, nodes[0]) + sdv__ratio(ratios, nodes[1]));
-    float size = lao_v3_dot(axis, axis);
-    m = lao_v3_along(m, n, lao_v3_dot(m, n) < 0.0f ? -1.0f : 1.0f);
-    if (size > 0.0f) {
-        m = lao_v3_along(m, axis, -lao_v3_dot(m, axis) / size);
+    uint32_t i;
+    memset(g->sections, 0, tree->node_count * sizeof *g->sections);
+    for (i = 0; i < 2 * g->cone_count; i++) {
+        const lao_v4 *cone = g->cones + 2 * (size_t)(i / 2);
+        lao_v4 *node = &g->sections[g->cone_nodes[i]];
+        lao_v3 along = lao_v3_unit(
+            lao_v3_make(cone[1].x - cone[0].x, cone[1].y - cone[0].y, cone[1].z - cone[0].z),
+            lao_v3_make(0.0f, 0.0f, 0.0f));
+        *node = lao_v4_make(node->x + along.x, node->y + along.y, node->z + along.z, 0.0f);
     }
-    m = lao_v3_unit(m, sdv_perpendicular(axis));
-    return lao_v4_make(m.x, m.y, m.z, ratio);
+    for (i = 0; i < tree->node_count; i++) {
+        lao_v3 along = lao_v3_make(g->sections[i].x, g->sections[i].y, g->sections[i].z);
+        lao_v3 m = sdv__minor(axes, i);
+        float size = lao_v3_dot(along, along);
+        if (size > 0.0f) {
+            m = lao_v3_along(m, along, -lao_v3_dot(m, along) / size);
+        }
+        m = lao_v3_unit(m, sdv_perpendicular(along));
+        g->sections[i] = lao_v4_make(m.x, m.y, m.z, 1.0f / sdv__ratio(ratios, i) - 1.0f);
+    }
 }
 /* The mean radius, and no less than twice the greatest amplitude: steeper bumps come off. */
 static float sdv__bump_size(const sdv_tree *tree) {
@@ -4019,18 +4158,45 @@ static float sdv__bump_size(const sdv_tree *tree) {
     }
     return n ? lao_max((float)(sum / n), 2.0f * sdv__most_amplitude(tree)) : 1.0f;
 }
-/* How much sdv_form_level rises per mm at most: by 1, by the change of the amplitude along the
-   cone, under noise of up to 2, and by the noise. */
-static lao_v4 sdv__bump(const sdv_tree *tree, const uint32_t *nodes, const lao_v4 *cone,
-                        float ratio, float size) {
-    float a = sdv__amplitude(tree, nodes[0]), b = sdv__amplitude(tree, nodes[1]);
-    lao_v3 axis = lao_v3_make(cone[1].x - cone[0].x, cone[1].y - cone[0].y, cone[1].z - cone[0].z);
-    double s = sqrt((double)lao_v3_dot(axis, axis)), d = (double)(cone[0].w - cone[1].w);
-    double rise = 1 + (double)(ratio * lao_max(a, b) * SDV_NOISE_SLOPE / size);
-    if (s > fabs(d)) {
-        rise += 2 * fabs((double)(a - b)) / sqrt((s - d) * (s + d));
+/* How much sdv_form_level rises per mm at most where it is below sdv_form_most: by what space is
+   stretched, by the change of section (times how far the place then is from the nearest ball's
+   centre) and of amplitude (under noise of up to 2) along the cone, and by the noise. */
+static float sdv__form_rise(const lao_v4 *cone, double length, const sdv_form *form) {
+    double c = (double)lao_v3_dot(lao_v3_make(form->a.x, form->a.y, form->a.z),
+                                  lao_v3_make(form->b.x, form->b.y, form->b.z));
+    double a = (double)form->a.w, b = (double)form->b.w, half = 0.5 * (a + b);
+    double turn = 0.5 * fabs(a - b) + sqrt(fmax(half * half - a * b * c * c, 0));
+    double reach = (double)(lao_max(cone[0].w, cone[1].w) + sdv_form_most(cone[0], cone[1], *form));
+    double steep = (double)(lao_max(form->bump.x, form->bump.y) * form->bump.w * SDV_NOISE_SLOPE);
+    double rise = 1 + fmax(a, b) + steep;
+    if (length > 0) {
+        rise += (turn * reach + 2 * fabs((double)(form->bump.x - form->bump.y))) / length;
     }
-    return lao_v4_make(a, b, (float)(rise * (1 + 1e-5)), 1.0f / size);
+    return (float)(rise * (1 + 1e-5));
+}
+static sdv_form sdv__form(const sdv_tree *tree, const sdv_grid *g, uint32_t i, float size) {
+    const lao_v4 *cone = g->cones + 2 * (size_t)i;
+    uint32_t a = g->cone_nodes[2 * (size_t)i], b = g->cone_nodes[2 * (size_t)i + 1];
+    double x = (double)cone[1].x - (double)cone[0].x, y = (double)cone[1].y - (double)cone[0].y;
+    double z = (double)cone[1].z - (double)cone[0].z, s = sqrt(x * x + y * y + z * z);
+    sdv_form form;
+    if (s <= fabs((double)(cone[0].w - cone[1].w))) { /* one ball holds the other: that alone */
+        a = cone[0].w < cone[1].w ? b : a;
+        b = a;
+    }
+    form.a = g->sections[a];
+    form.b = g->sections[b];
+    form.bump = lao_v4_make(sdv__amplitude(tree, a), sdv__amplitude(tree, b), 1.0f, 1.0f / size);
+    form.bump.z = sdv__form_rise(cone, s, &form);
+    return form;
+}
+static sdv_form sdv__form_of(const sdv_grid *g, float cone) {
+    const lao_v4 *f = g->forms + 3 * (size_t)cone;
+    sdv_form form;
+    form.a = f[0];
+    form.b = f[1];
+    form.bump = f[2];
+    return form;
 }
 static void sdv__forms_fill(const sdv_tree *tree, sdv_grid *g) {
     uint32_t i;
@@ -4039,20 +4205,23 @@ static void sdv__forms_fill(const sdv_tree *tree, sdv_grid *g) {
         return;
     }
     size = sdv__bump_size(tree);
+    sdv__sections_fill(tree, g);
     for (i = 0; i < g->cone_count; i++) {
-        const uint32_t *nodes = g->cone_nodes + 2 * (size_t)i;
-        const lao_v4 *cone = g->cones + 2 * (size_t)i;
-        lao_v4 *form = g->forms + 2 * (size_t)i;
-        form[0] = sdv__section(tree, nodes, cone);
-        form[1] = sdv__bump(tree, nodes, cone, form[0].w, size);
+        sdv_form form = sdv__form(tree, g, i, size);
+        lao_v4 *to = g->forms + 3 * (size_t)i;
+        to[0] = form.a;
+        to[1] = form.b;
+        to[2] = form.bump;
     }
 }
 /* Memory for cones, with forms behind them where the tree has any. */
 static void sdv__cones_take(const sdv_tree *tree, sdv_grid *g) {
     uint64_t texels = 2 * (uint64_t)g->cone_count;
-    bool forms = sdv__has_forms(tree);
-    g->cones = (lao_v4 *)sdv__take(&g->allocator, forms ? 2 * texels : texels, sizeof *g->cones);
+    uint64_t forms = sdv__has_forms(tree) ? 3 * (uint64_t)g->cone_count : 0;
+    uint64_t sections = forms ? tree->node_count : 0;
+    g->cones = (lao_v4 *)sdv__take(&g->allocator, texels + forms + sections, sizeof *g->cones);
     g->forms = g->cones && forms ? g->cones + texels : NULL;
+    g->sections = g->forms ? g->forms + forms : NULL;
     g->cone_nodes = (uint32_t *)sdv__take(&g->allocator, texels, sizeof *g->cone_nodes);
 }
 static void sdv__cones_fill(const sdv_tree *tree, sdv_grid *g) {
@@ -5144,18 +5313,27 @@ SDV_API lao_result sdv_grid_update(const sdv_host *host, const sdv_tree *tree,
 }
 
 /* ---- reading */
-/* Of p to the forms of a cell's list; a bound. */
-static float sdv__form_distance(const sdv_grid *g, const lao_v4 *cell, lao_v3 p, uint32_t *cone) {
-    sdv_near n = sdv_near_start(0.0f);
+/* Adds the forms of a cell's list to a sample. */
+static sdv_near sdv__near_forms(const sdv_grid *g, const lao_v4 *cell, lao_v3 p, lao_v3 direction,
+                                sdv_near n) {
     uint32_t i;
+    for (i = 0; i < (uint32_t)cell->w; i++) {
+        float id = g->ids[(size_t)cell->z + i];
+        const lao_v4 *c = g->cones + 2 * (size_t)id;
+        lao_v2 along = sdv_cone_along(p, direction, c[0], c[1]);
+        if (sdv_near_asks(n, along)) {
+            n = sdv_near_form(n, along, p, c[0], c[1], sdv__form_of(g, id), id);
+        }
+    }
+    return n;
+}
+/* Of p to what a cell lists; of forms a bound. */
+static float sdv__form_distance(const sdv_grid *g, const lao_v4 *cell, lao_v3 p, uint32_t *cone) {
+    sdv_near n;
     if (!g->forms) {
         return sdv__list_distance(g, cell, p, cone);
     }
-    for (i = 0; i < (uint32_t)cell->w; i++) {
-        float id = g->ids[(size_t)cell->z + i];
-        const lao_v4 *c = g->cones + 2 * (size_t)id, *form = g->forms + 2 * (size_t)id;
-        n = sdv_near_form(n, p, lao_v3_make(0.0f, 0.0f, 1.0f), c[0], c[1], form[0], form[1], id);
-    }
+    n = sdv__near_forms(g, cell, p, lao_v3_make(0.0f, 0.0f, 1.0f), sdv_near_start(0.0f));
     if (n.cone >= 0.0f) {
         *cone = (uint32_t)n.cone;
     }
@@ -5196,36 +5374,34 @@ static sdv_near sdv__near_at(const sdv_grid *g, const lao_v4 *cell, lao_v3 p, la
     sdv_near n = sdv_near_start(sdv_near_reach(g->cell));
     const lao_v4 *from = cell->w > 0.0f ? cell : g->cells + (size_t)cell->y;
     uint32_t i;
+    if (g->forms) {
+        return sdv__near_forms(g, from, p, direction, n);
+    }
     for (i = 0; i < (uint32_t)from->w; i++) {
         float id = g->ids[(size_t)from->z + i];
         const lao_v4 *cone = g->cones + 2 * (size_t)id;
-        if (g->forms) {
-            const lao_v4 *form = g->forms + 2 * (size_t)id;
-            n = sdv_near_form(n, p, direction, cone[0], cone[1], form[0], form[1], id);
-        } else {
-            n = sdv_near_add(n, p, direction, cone[0], cone[1], id);
-        }
+        n = sdv_near_add(n, p, direction, cone[0], cone[1], id);
     }
     return n;
 }
 static sdv_minimum sdv__minimum_add(const sdv_grid *g, const sdv_ray *ray, sdv_minimum found,
                                     float low, float high) {
     const lao_v4 *ends = g->cones + 2 * (size_t)found.cone;
-    const lao_v4 *form = g->forms ? g->forms + 2 * (size_t)found.cone : NULL;
-    return form ? sdv_minimum_form(found, ray->origin, ray->direction, ends[0], ends[1], form[0],
-                                   form[1], low, high)
-                : sdv_minimum_add(found, ray->origin, ray->direction, ends[0], ends[1], low, high);
+    return g->forms
+               ? sdv_minimum_form(found, ray->origin, ray->direction, ends[0], ends[1],
+                                  sdv__form_of(g, found.cone), low, high)
+               : sdv_minimum_add(found, ray->origin, ray->direction, ends[0], ends[1], low, high);
 }
-/* Outward normal of a cone (xyz) and its distance (w), of a form as far as that can be told. */
-static lao_v4 sdv__estimate(const sdv_grid *g, uint32_t cone, lao_v3 p) {
+/* Outward normal of a cone (xyz) and its distance (w), of a form as far as that can be told. round:
+   that of the round cone. */
+static lao_v4 sdv__estimate(const sdv_grid *g, uint32_t cone, lao_v3 p, float round) {
     const lao_v4 *ends = g->cones + 2 * (size_t)cone;
     lao_v3 n;
     if (g->forms) {
-        const lao_v4 *form = g->forms + 2 * (size_t)cone;
-        return sdv_form_estimate(p, ends[0], ends[1], form[0], form[1]);
+        return sdv_form_estimate(p, ends[0], ends[1], sdv__form_of(g, (float)cone));
     }
     n = sdv_round_cone_gradient(p, ends[0], ends[1]);
-    return lao_v4_make(n.x, n.y, n.z, sdv_round_cone(p, ends[0], ends[1]));
+    return lao_v4_make(n.x, n.y, n.z, round);
 }
 static const lao_v4 *sdv__cell_at(const sdv_grid *g, lao_v3 p) {
     return g->cells + sdv_cell_at(sdv__grid_box(g), p);
@@ -5283,7 +5459,7 @@ static void sdv__land(const sdv_grid *g, const sdv_ray *ray, const sdv_march *m,
             break;
         }
         off = lao_abs(n.distance);
-        there = sdv__estimate(g, (uint32_t)n.cone, p);
+        there = sdv__estimate(g, (uint32_t)n.cone, p, n.distance);
         gradient = lao_v3_make(there.x, there.y, there.z);
         hit->position = p;
         hit->cone = (uint32_t)n.cone;
@@ -5389,7 +5565,7 @@ static lao_v3 sdv__solid_gradient(const sdv_grid *g, const sdv_shapes *shapes, c
     if (s->part >= 0) {
         return lao_v3_scale(sdv__shape_gradient(shapes, s->part, p), s->side);
     }
-    there = sdv__estimate(g, cone, p);
+    there = sdv__estimate(g, cone, p, s->distance);
     return lao_v3_make(there.x, there.y, there.z);
 }
 static void sdv__solid_land(const sdv_grid *g, const sdv_shapes *shapes, const sdv_ray *ray,
@@ -5521,7 +5697,7 @@ SDV_API lao_v3 sdv_smooth_normal(const sdv_grid *grid, lao_v3 p, uint32_t cone, 
                                  float smoothness) {
     const lao_v4 *cell = sdv__cell_at(grid, p), *own = grid->cones + 2 * (size_t)cone;
     lao_v2 reach = sdv_joint_reach(p, own[0], own[1], smoothness, grid->cell);
-    lao_v4 at = sdv__estimate(grid, cone, p);
+    lao_v4 at = sdv__estimate(grid, cone, p, 0.0f);
     lao_v3 sum = sdv_joint_start(lao_v3_make(at.x, at.y, at.z), own[0], own[1], reach);
     uint32_t i;
     if (!(reach.x > 0.0f)) {
@@ -5530,23 +5706,39 @@ SDV_API lao_v3 sdv_smooth_normal(const sdv_grid *grid, lao_v3 p, uint32_t cone, 
     for (i = 0; i < (uint32_t)cell->w; i++) {
         uint32_t other = (uint32_t)grid->ids[(size_t)cell->z + i];
         const lao_v4 *ends = grid->cones + 2 * (size_t)other;
-        at = sdv__estimate(grid, other, p);
+        float round = grid->forms ? 0.0f : sdv_round_cone(p, ends[0], ends[1]);
+        if (!(round < reach.x)) {
+            continue;
+        }
+        at = sdv__estimate(grid, other, p, round);
         if (at.w < reach.x) {
             sum = sdv_joint_add(sum, at.w, lao_v3_make(at.x, at.y, at.z), ends[0], ends[1], reach);
         }
     }
     return sdv_joint_normal(sum, normal);
 }
+/* How far it is from the wall of a cone at p to the middle. */
+static float sdv__room(const sdv_grid *g, uint32_t cone, lao_v3 p) {
+    const lao_v4 *ends = g->cones + 2 * (size_t)cone;
+    sdv_cone_point c = sdv_cone_point_make(p, ends[0], ends[1]);
+    float room = sdv_cone_ball_radius(c, ends[0], ends[1]);
+    return g->forms ? room * sdv_form_ratio(sdv__form_of(g, (float)cone)) : room;
+}
 SDV_API float sdv_openness(const sdv_grid *grid, const sdv_shapes *shapes, lao_v3 p, lao_v3 normal,
                            float reach, uint32_t inside) {
     float closed = 0.0f;
     lao_int i;
+    if (inside && reach > 0.0f) {
+        uint32_t cone = 0;
+        float d = sdv_grid_distance(grid, p, &cone);
+        reach = sdv_open_reach(reach, sdv__room(grid, cone, p), d, grid->cell);
+    }
     for (i = 0; i < SDV_OPEN_SAMPLES && reach > 0.0f; i++) {
         float place = sdv_open_place(reach, i);
         lao_v3 q = lao_v3_along(p, normal, place);
         uint32_t cone = 0;
         float d = sdv_grid_distance(grid, q, &cone);
-        d = grid->forms ? sdv__estimate(grid, cone, q).w : d;
+        d = grid->forms ? sdv__estimate(grid, cone, q, d).w : d;
         d = shapes ? sdv__solid_of(shapes, d, q, false).distance : d;
         closed = sdv_open_add(closed, inside ? -d : d, place, i);
     }
@@ -6389,7 +6581,7 @@ static void sdv__object_grid(sdv_object *object, const sdv_grid *grid) {
         sdv__object_buffer(object, "vessel_ids", grid->ids, grid->id_count);
     }
     sdv__object_buffer(object, "vessel_cones", grid->cones,
-                       (grid->forms ? 4 : 2) * grid->cone_count);
+                       (grid->forms ? 5 : 2) * grid->cone_count);
     if (grid->forms) {
         sdv__object_buffer(object, "vessel_forms", grid->forms, 1);
     }

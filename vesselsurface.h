@@ -29,6 +29,9 @@
        ...
        vsf_near_free(&table); vsf_buffers_free(&buffers); vsf_mesh_free(&mesh);
 
+   FILES  lineao.h vesselsurface.h. To draw with vsf_module(): also a backend (see lineao.h) and
+   vesselsurface_shaders.h, beside lineao_shaders.h.
+
    CONFIGURATION (define before including)
        VESSELSURFACE_IMPLEMENTATION   the function bodies, in one translation unit
        VSF_API                        linkage of the public functions (default: extern)

@@ -10,28 +10,14 @@ here=$(dirname "$(readlink -f "$0")")
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
 
-skip() {
-  echo "fill_check: skipped: $1"
-  exit 0
-}
-
-have() { /usr/bin/python3 -c 'import cv2' 2>/dev/null; }
-
-install() {
-  local apt=(env DEBIAN_FRONTEND=noninteractive apt-get -qq -o DPkg::Lock::Timeout=300 -o Dpkg::Use-Pty=0)
-  [ "$(id -u)" = 0 ] && command -v apt-get >/dev/null || return 1
-  { "${apt[@]}" update && "${apt[@]}" install -y --no-install-recommends python3-opencv; } >"$work/apt" 2>&1 </dev/null
-}
-
-[ -x /usr/bin/python3 ] || skip "there is no /usr/bin/python3"
-if ! have; then
-  install || skip "the package python3-opencv is missing and could not be installed"
-  have || skip "OpenCV does not load: $(/usr/bin/python3 -c 'import cv2' 2>&1 | tail -n 1)"
-fi
+# shellcheck source-path=SCRIPTDIR source=peer.sh
+. "$here/peer.sh"
+opencv() { "$peer_python" -c 'import cv2'; }
+peer_need opencv python3-opencv
 
 "$bench" --screen --export-fills "$work" --json >"$work/ours.json"
-/usr/bin/python3 "$here/fill_peer.py" "$work" >"$work/peer.json"
-/usr/bin/python3 - "$work/ours.json" "$work/peer.json" <<'END'
+"$peer_python" "$here/fill_peer.py" "$work" >"$work/peer.json"
+"$peer_python" - "$work/ours.json" "$work/peer.json" <<'END'
 import json
 import sys
 ours, peer = (json.load(open(name)) for name in sys.argv[1:3])

@@ -13,30 +13,19 @@ size=$((${view%x*} * 2))x$((${view#*x} * 2))
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
 
-skip() {
-  echo "peer_check: skipped: $1"
-  exit 0
+# shellcheck source-path=SCRIPTDIR source=peer.sh
+. "$here/peer.sh"
+vtk() {
+  [ -n "${DISPLAY-}" ] || command -v Xvfb || { echo "there is neither a display nor Xvfb" && return 1; }
+  "$peer_python" -c 'import vtk'
 }
-
-have() { /usr/bin/python3 -c 'import vtk' 2>/dev/null && { [ -n "${DISPLAY-}" ] || command -v Xvfb >/dev/null; }; }
-
-install() {
-  local apt=(env DEBIAN_FRONTEND=noninteractive apt-get -qq -o DPkg::Lock::Timeout=300 -o Dpkg::Use-Pty=0)
-  [ "$(id -u)" = 0 ] && command -v apt-get >/dev/null || return 1
-  { "${apt[@]}" update && "${apt[@]}" install -y --no-install-recommends python3-vtk9 xvfb; } >"$work/apt" 2>&1 </dev/null
-}
-
-[ -x /usr/bin/python3 ] || skip "there is no /usr/bin/python3"
-if ! have; then
-  install || skip "the packages python3-vtk9 and xvfb are missing and could not be installed"
-  have || skip "VTK does not load: $(/usr/bin/python3 -c 'import vtk' 2>&1 | tail -n 1)"
-fi
+peer_need vtk python3-vtk9 xvfb
 
 export LIBGL_ALWAYS_SOFTWARE=1
 "$bench" --lines "$lines" --size "$view@2" --export-lines "$work/lines"
 "$bench" --lines "$lines" --size "$view@2" --presets default --json >"$work/lineao.json"
-/usr/bin/python3 "$here/vtk_peer.py" "$work/lines" --size "$size" --frames "$frames" >"$work/vtk.json"
-/usr/bin/python3 - "$work/lineao.json" "$work/vtk.json" "$least" <<'END'
+"$peer_python" "$here/vtk_peer.py" "$work/lines" --size "$size" --frames "$frames" >"$work/vtk.json"
+"$peer_python" - "$work/lineao.json" "$work/vtk.json" "$least" <<'END'
 import json
 import sys
 with open(sys.argv[1]) as file:

@@ -4,7 +4,7 @@
 LAO_TEX(0, samplerBuffer, points)
 LAO_TEX(1, samplerBuffer, colors)
 LAO_TEX(2, samplerBuffer, order) /* of segments in time, where the lines have times */
-LAO_TEX(3, sampler2D, far) /* variant 1: farthest depth of 3 x 3 tiles of 8 x 8 pixels, from each on */
+LAO_TEX(3, sampler2D, far) /* variant 1: farthest depth of 4 x 4 tiles of 4 x 4 pixels, from each on */
 LAO_CONSTANT(0, lao_constant_trail)
 LAO_CONSTANT(1, lao_constant_halo)
 LAO_CONSTANT(2, lao_constant_halo_function)
@@ -81,23 +81,35 @@ lao_v2 neighbour_of(segment_part s, segment_end end, bool at_end, lao_v3 corner)
                              at_end ? 1.0 : -1.0, join.square);
 }
 
-/* Does all of the segment lie behind what was drawn before? A corner is at most sqrt(2) half widths from its end; a halo lies
-   farther back than its line. The same for all four corners. */
+/* Does all of the segment lie behind what was drawn before? All of it is within 3/4 of the width from the line between its ends
+   (a corner is at most sqrt(2) half widths from its end); a halo lies farther back than its line. The line is cut where the box
+   around a piece may outgrow 4 x 4 tiles less one. Depth is linear along it on the screen; in front of it, nearer than that. The
+   same for all four corners. */
 bool hidden(lao_v3 p1, lao_v3 p2) {
     float r = 0.75 * lao_setting_width;
+    float nearest = max(p1.z, p2.z);
+    vec2 slope = max(abs(p1.xy / p1.z), abs(p2.xy / p2.z)) * nearest;
+    vec2 size = lao_ball_size(lao_v3_make(slope.x, slope.y, nearest), r, lao_frame.scale, lao_frame.depth.w) + 1.0;
     vec4 c1 = lao_project(lao_frame.projection, p1);
     vec4 c2 = lao_project(lao_frame.projection, p2);
-    vec4 front = lao_project(lao_frame.projection, lao_v3_make(0.0, 0.0, max(p1.z, p2.z) + r));
-    vec2 size1 = lao_ball_size(p1, r, lao_frame.scale, lao_frame.depth.w) + 1.0;
-    vec2 size2 = lao_ball_size(p2, r, lao_frame.scale, lao_frame.depth.w) + 1.0;
-    vec2 at1 = (c1.xy / c1.w * 0.5 + 0.5) * lao_frame.viewport.xy;
-    vec2 at2 = (c2.xy / c2.w * 0.5 + 0.5) * lao_frame.viewport.xy;
-    vec2 last = lao_frame.viewport.xy - 1.0;
-    vec2 low = floor(min(max(min(at1 - size1, at2 - size2), vec2(0.0)), last) * 0.125);
-    vec2 high = floor(min(max(max(at1 + size1, at2 + size2), vec2(0.0)), last) * 0.125);
-    bool small = high.x - low.x < 2.5 && high.y - low.y < 2.5 && min(size1.x, size2.x) >= 1.0;
-    float behind = texelFetch(far, ivec2(low), 0).x;
-    return small && front.w > 0.0 && lao_behind(front.z / front.w, behind, lao_frame.scale.z);
+    vec4 front1 = lao_project(lao_frame.projection, lao_v3_make(0.0, 0.0, p1.z + r));
+    vec4 front2 = lao_project(lao_frame.projection, lao_v3_make(0.0, 0.0, p2.z + r));
+    vec2 at = (c1.xy / c1.w * 0.5 + 0.5) * lao_frame.viewport.xy;
+    vec2 way = (c2.xy / c2.w * 0.5 + 0.5) * lao_frame.viewport.xy - at;
+    float depth = front1.z / front1.w;
+    float deeper = front2.z / front2.w - depth;
+    vec2 pieces = ceil(abs(way) / (12.0 - 2.0 * size));
+    float count = max(max(pieces.x, pieces.y), 1.0);
+    bool behind = min(size.x, size.y) >= 1.0 && max(size.x, size.y) < 6.0 && count <= 8.0;
+    for (float i = 0.0; behind && i < count; i += 1.0) {
+        float t1 = i / count;
+        float t2 = (i + 1.0) / count;
+        vec2 low = min(at + t1 * way, at + t2 * way) - size;
+        ivec2 tile = ivec2(floor(clamp(low, vec2(0.0), lao_frame.viewport.xy - 1.0) * 0.25));
+        float around = texelFetch(far, tile, 0).x;
+        behind = lao_behind(depth + t1 * deeper, around, lao_frame.scale.z) && lao_behind(depth + t2 * deeper, around, lao_frame.scale.z);
+    }
+    return behind;
 }
 
 void main() {

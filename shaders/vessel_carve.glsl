@@ -72,7 +72,7 @@ void land(sdv_box b, lao_v3 origin, lao_v3 direction, float start, bool inside) 
             gradient = lao_v3_scale(sdv_shape_gradient_at(fields, sdv_shape_fetch(shapes, s.solid.part), p), s.solid.side);
             out_position = vec4(p, -2.0);
         } else {
-            gradient = estimate_at(p, s.cone).xyz;
+            gradient = estimate_at(p, s.cone, s.solid.distance).xyz;
             out_position = vec4(p, s.cone);
         }
         out_normal.xyz = inside ? lao_v3_scale(gradient, -1.0) : gradient;

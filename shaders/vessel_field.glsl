@@ -12,20 +12,25 @@ float id_fetch(int i) {
     }
     return texelFetch(lists, sdv_item(i), 0).x;
 }
-/* Where the form of a cone is, in the buffer of the cones, behind all of them. */
-int form_at(float cone) {
-    return 2 * int(texelFetch(box, 1).w) + 2 * int(cone);
+/* The form of a cone: in the buffer of the cones, behind all of them. */
+sdv_form form_at(float cone) {
+    int at = 2 * int(texelFetch(box, 1).w) + 3 * int(cone);
+    sdv_form form;
+    form.a = texelFetch(cones, at);
+    form.b = texelFetch(cones, at + 1);
+    form.bump = texelFetch(cones, at + 2);
+    return form;
 }
-/* Outward normal of a cone (xyz) and its distance (w), of a form as far as that can be told. */
-vec4 estimate_at(lao_v3 p, float cone) {
+/* Outward normal of a cone (xyz) and its distance (w), of a form as far as that can be told. round: that of the round
+   cone. */
+vec4 estimate_at(lao_v3 p, float cone, float round) {
     int at = 2 * int(cone);
     vec4 a = texelFetch(cones, at);
     vec4 b = texelFetch(cones, at + 1);
     if (lao_constant_has_vessel_forms != 0) {
-        int form = form_at(cone);
-        return sdv_form_estimate(p, a, b, texelFetch(cones, form), texelFetch(cones, form + 1));
+        return sdv_form_estimate(p, a, b, form_at(cone));
     }
-    return vec4(sdv_round_cone_gradient(p, a, b), sdv_round_cone(p, a, b));
+    return vec4(sdv_round_cone_gradient(p, a, b), round);
 }
 /* One sample: from the list of the cell at p, or of the nearest cell that has one. */
 sdv_near near_in(sdv_box b, vec4 cell, lao_v3 p, lao_v3 direction) {
@@ -40,9 +45,12 @@ sdv_near near_in(sdv_box b, vec4 cell, lao_v3 p, lao_v3 direction) {
         float id = id_fetch(first + i);
         int at = 2 * int(id);
         if (lao_constant_has_vessel_forms != 0) {
-            int form = form_at(id);
-            n = sdv_near_form(n, p, direction, texelFetch(cones, at), texelFetch(cones, at + 1), texelFetch(cones, form),
-                              texelFetch(cones, form + 1), id);
+            vec4 a = texelFetch(cones, at);
+            vec4 b = texelFetch(cones, at + 1);
+            lao_v2 along = sdv_cone_along(p, direction, a, b);
+            if (sdv_near_asks(n, along)) {
+                n = sdv_near_form(n, along, p, a, b, form_at(id), id);
+            }
         } else {
             n = sdv_near_add(n, p, direction, texelFetch(cones, at), texelFetch(cones, at + 1), id);
         }

@@ -44,7 +44,7 @@ bool has_halo(float d_min, lao_v3 near_miss, lao_v3 direction, float wide) {
     return is_marked(cone, near_miss);
 }
 /* White that is left by ink at these phases; mark: how much of the pixel a mark inks. */
-float paper(int style, lao_v2 phase, float dark, float shadow, float mark, float wide_u, float wide_v) {
+float paper(int style, lao_v2 phase, float dark, float shadow, float mark, float wide_u, float wide_v, float finer) {
     float pattern_ink = 0.0;
     if (style == SDV_STYLE_PATTERN) {
         int n = int(texelFetch(pattern, 0).x);
@@ -55,9 +55,9 @@ float paper(int style, lao_v2 phase, float dark, float shadow, float mark, float
         }
         pattern_ink = n > 0 ? sdv_pattern_ink(inked, dark, wide_u, wide_v) : 0.0;
     }
-    LAO_EXACT float left = sdv_style_paper(style, phase, dark, shadow, wide_u, wide_v, pattern_ink);
+    LAO_EXACT float left = sdv_style_paper(style, phase, dark, shadow, wide_u, wide_v, finer, pattern_ink);
     if (mark > 0.0) {
-        left = left * (1.0 - sdv_style_ink(lao_constant_mark_style + SDV_STYLE_STIPPLE, phase.x, phase.y, mark, wide_u, wide_v));
+        left = left * (1.0 - sdv_style_ink(lao_constant_mark_style + SDV_STYLE_STIPPLE, phase.x, phase.y, mark, wide_u, wide_v, finer));
     }
     return left;
 }
@@ -79,6 +79,7 @@ void main() {
     float tone = 1.0;
     bool marked = false;
     LAO_EXACT float shadow = 0.0;
+    float finer = 1.0;
     if (!sdv_is_covered(hit.w)) {
         float d_min = texelFetch(normal, pixel, 0).w;
         float reach = lao_constant_near_miss == SDV_NEAR_MISS_NONE ? 0.0 : 0.01 * lao_setting_void_reach * lao_frame.depth.z;
@@ -94,7 +95,10 @@ void main() {
         marked = has_halo(d_min, lao_v3_along(origin, direction, r.y), direction, lao_max(wide_u, wide_v));
     } else {
         if (lao_constant_variant != 2 && hit.w >= 0.0) {
+            int at = 2 * int(hit.w);
             marked = is_marked(hit.w, p);
+            finer = sdv_ink_finer(sdv_cone_radius(p, texelFetch(cones, at), texelFetch(cones, at + 1)), lao_setting_ssp_period,
+                                  sdv_pixel_size(lao_frame.ray, sdv_depth_of(lao_frame.view, p), lao_frame.depth.w));
         }
         style = lao_constant_style;
         if (style != SDV_STYLE_PLAIN && style != SDV_STYLE_SHADOW) {
@@ -108,10 +112,10 @@ void main() {
     }
     float mark = marked ? lao_setting_mark_darkness : 0.0;
     vec4 before = texelFetch(recalled, pixel, 0);
-    float now = paper(style, own.xy, 1.0 - tone, shadow, mark, wide_u, wide_v);
+    float now = paper(style, own.xy, 1.0 - tone, shadow, mark, wide_u, wide_v, finer);
     float rest = 0.0;
     if (before.w > 0.0) {
-        LAO_EXACT float shown = paper(style, before.xy, 1.0 - tone, shadow, mark, wide_u, wide_v) + before.z;
+        LAO_EXACT float shown = paper(style, before.xy, 1.0 - tone, shadow, mark, wide_u, wide_v, finer) + before.z;
         rest = sdv_ink_rest(shown, now, lao_setting_ink_step);
     }
     LAO_EXACT float white = now + rest;

@@ -12,14 +12,30 @@ float field_at(sdv_box b, lao_v3 p) {
     sdv_near near = near_at(b, p, lao_v3_make(0.0, 0.0, 1.0));
     float d = near.distance;
     if (lao_constant_has_vessel_forms != 0) {
-        d = estimate_at(p, near.cone).w;
+        d = estimate_at(p, near.cone, d).w;
     }
     return combined(d, p, false);
 }
 
+/* How far it is from the wall of a cone at p to the middle. */
+float room_at(lao_v3 p, float cone) {
+    int at = 2 * int(cone);
+    vec4 a = texelFetch(cones, at);
+    vec4 b = texelFetch(cones, at + 1);
+    float room = sdv_cone_ball_radius(sdv_cone_point_make(p, a, b), a, b);
+    if (lao_constant_has_vessel_forms != 0) {
+        LAO_EXACT float narrow = room * sdv_form_ratio(form_at(cone));
+        return narrow;
+    }
+    return room;
+}
 /* Openness of p along its normal: sdv_openness; from within a vessel the room inside counts. */
 float openness(sdv_box b, lao_v3 p, lao_v3 n, bool inside) {
     float reach = 0.01 * lao_setting_occlusion_reach * lao_frame.depth.z;
+    if (inside) {
+        sdv_near near = near_at(b, p, lao_v3_make(0.0, 0.0, 1.0));
+        reach = sdv_open_reach(reach, room_at(p, near.cone), near.distance, b.cell);
+    }
     float closed = 0.0;
     for (int i = 0; i < SDV_OPEN_SAMPLES; i++) {
         float place = sdv_open_place(reach, i);
@@ -38,13 +54,18 @@ lao_v3 smooth_normal(sdv_box b, lao_v3 p, float cone, lao_v3 n) {
     if (!(reach.x > 0.0)) {
         return n;
     }
-    lao_v3 sum = sdv_joint_start(estimate_at(p, cone).xyz, texelFetch(cones, own), texelFetch(cones, own + 1), reach);
+    lao_v3 sum = sdv_joint_start(estimate_at(p, cone, 0.0).xyz, texelFetch(cones, own), texelFetch(cones, own + 1), reach);
     for (int i = 0; i < count; i++) {
         float id = id_fetch(int(cell.z) + i);
         int at = 2 * int(id);
-        vec4 there = estimate_at(p, id);
-        if (there.w < reach.x) {
-            sum = sdv_joint_add(sum, there.w, there.xyz, texelFetch(cones, at), texelFetch(cones, at + 1), reach);
+        vec4 a = texelFetch(cones, at);
+        vec4 b = texelFetch(cones, at + 1);
+        float round = lao_constant_has_vessel_forms != 0 ? 0.0 : sdv_round_cone(p, a, b);
+        if (round < reach.x) {
+            vec4 there = estimate_at(p, id, round);
+            if (there.w < reach.x) {
+                sum = sdv_joint_add(sum, there.w, there.xyz, a, b, reach);
+            }
         }
     }
     return sdv_joint_normal(sum, n);

@@ -191,8 +191,10 @@ void main() {
         light = sdv_dimmed(light, sdv_depth_shadow_at(n, r), lao_setting_shadow_strength);
     }
     lao_v3 towards = lao_v3_scale(direction, -1.0);
-    lao_v3 shade = sdv_shade(color, facing, towards, lao_setting_surface_ambient, lao_setting_surface_diffuse,
-                             lao_setting_surface_specular, lao_constant_surface_shininess, light);
+    lao_v2 parts = sdv_light_parts(lao_setting_surface_ambient, lao_setting_surface_diffuse,
+                                   lao_constant_variant != 2 && is_inside(r));
+    lao_v3 shade = sdv_shade(color, facing, towards, parts.x, parts.y, lao_setting_surface_specular,
+                             lao_constant_surface_shininess, light);
     out_color = vec4(lao_v3_scale(shade, white), 1.0);
 }
 #endif

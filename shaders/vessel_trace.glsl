@@ -23,9 +23,7 @@ sdv_minimum minimum_add(sdv_minimum found, lao_v3 origin, lao_v3 direction, floa
     vec4 a = texelFetch(cones, at);
     vec4 b = texelFetch(cones, at + 1);
     if (lao_constant_has_vessel_forms != 0) {
-        int form = form_at(found.cone);
-        return sdv_minimum_form(found, origin, direction, a, b, texelFetch(cones, form), texelFetch(cones, form + 1), low,
-                                high);
+        return sdv_minimum_form(found, origin, direction, a, b, form_at(found.cone), low, high);
     }
     return sdv_minimum_add(found, origin, direction, a, b, low, high);
 }
@@ -79,7 +77,7 @@ void land(sdv_box b, lao_v3 origin, lao_v3 direction, sdv_march m) {
             break;
         }
         off = lao_abs(n.distance);
-        vec4 there = estimate_at(p, n.cone);
+        vec4 there = estimate_at(p, n.cone, n.distance);
         lao_v3 gradient = there.xyz;
         out_position = vec4(p, n.cone);
         out_normal.xyz = m.inside > 0.5 ? lao_v3_scale(gradient, -1.0) : gradient;

@@ -4,6 +4,7 @@
 #include "report.h"
 #include "writing.h"
 #include "vessel_lens.h"
+#include "vessel_marks.h"
 #include "vessel_page.h"
 #include "video.h"
 
@@ -79,20 +80,13 @@ typedef struct stage {
 } stage;
 
 static bool write_page(const char *path, stage *s) {
-    picture solids[CLI_TARGETS], whole;
-    bool opaque = !(s->options->background[3] < 1), ok = true;
-    memset(solids, 0, sizeof solids);
-    for (uint32_t i = 0; ok && i < s->count; i++)
-        ok = cli_session_picture(&s->sessions[i], &solids[i]);
-    ok = ok && (picture_make(s->options->size[0], s->options->size[1], &whole) ||
-                cli_fail("out of memory"));
-    if (ok) {
-        ok = cli_page_draw(&s->page, s->trees, &s->shot, solids, s->flats, &whole) &&
-             cli_write_pixels(path, s->video, &whole, opaque);
-        picture_free(&whole);
-    }
-    for (uint32_t i = 0; i < s->count; i++)
-        picture_free(&solids[i]);
+    bool opaque = !(s->options->background[3] < 1);
+    picture whole;
+    if (!picture_make(s->options->size[0], s->options->size[1], &whole))
+        return cli_fail("out of memory");
+    bool ok = cli_page_draw(&s->page, s->trees, &s->shot, s->sessions, s->flats, &whole) &&
+              cli_write_pixels(path, s->video, &whole, opaque);
+    picture_free(&whole);
     return ok;
 }
 
@@ -246,6 +240,11 @@ static bool prepare(stage *s, const view_list *views) {
            (!options->vessel.link || !options->out || draw_flats(s));
 }
 
+/* For dumps, and for what the page numbers. */
+static bool keeps_images(const stage *s, uint32_t tree) {
+    return (s->options->dump && tree == 0) || (s->options->vessel.link && s->trees[tree].risk > 0);
+}
+
 static bool render(stage *s) {
     const cli_options *options = s->options;
     view_list views;
@@ -259,7 +258,7 @@ static bool render(stage *s) {
     if (ok && (options->out || options->dump || options->timings)) {
         for (uint32_t i = 0; ok && i < s->count; i++)
             ok = cli_session_open(&s->sessions[i], options->backend, &s->trees[i].scene, &s->shot,
-                                  options->dump && i == 0 ? LAO_VIEW_KEEP_IMAGES : 0);
+                                  keeps_images(s, i) ? LAO_VIEW_KEEP_IMAGES : 0);
         ok = ok && draw(s, &views);
         if (ok && options->timings) {
             cJSON *json = cli_timings(&s->sessions[0], &s->shot);
@@ -282,8 +281,9 @@ static void add_warnings(const cli_tree *tree, cJSON *list) {
     }
 }
 
-/* Segments, counted as --tree does, and branches that are at risk, in ascending order. */
-static void add_target(const cli_tree *tree, cJSON *list) {
+/* Segments that are at risk, counted as --tree does, and branches, by their numbers in the linked
+ * view: the nearest first. False: reported. */
+static bool add_target(const cli_tree *tree, cJSON *list) {
     cJSON *target = cJSON_CreateObject();
     float least, risk = (float)tree->risk;
     cli_tree_at_risk(tree, &least);
@@ -292,7 +292,7 @@ static void add_target(const cli_tree *tree, cJSON *list) {
     cJSON_AddItemToObject(target, "least_distance",
                           least < SDV_FAR ? cli_json_float(least) : cJSON_CreateNull());
     if (!(tree->risk > 0))
-        return;
+        return true;
     cJSON_AddItemToObject(target, "risk", cli_json_float(risk));
     cJSON *segments = cJSON_AddArrayToObject(target, "segments");
     for (uint32_t i = 0; i < tree->cone_count; i++) {
@@ -303,25 +303,24 @@ static void add_target(const cli_tree *tree, cJSON *list) {
         cJSON_AddItemToObject(item, "distance", cli_json_float(tree->cone_distances[i]));
         cJSON_AddItemToArray(segments, item);
     }
-    uint32_t nearest[CLI_NUMBERED], numbered = cli_nearest_branches(tree, nearest);
+    uint32_t count;
+    cli_branch *at_risk = cli_branches_at_risk(tree, &count);
     cJSON *branches = cJSON_AddArrayToObject(target, "branches");
-    for (uint32_t i = 0; i < tree->reduced.node_count; i++) {
-        if (!(tree->distances[i] < risk))
-            continue;
+    for (uint32_t i = 0; at_risk && i < count; i++) {
         cJSON *item = cJSON_CreateObject();
-        cJSON_AddNumberToObject(item, "id", tree->reduced.ids[i]);
-        cJSON_AddItemToObject(item, "distance", cli_json_float(tree->distances[i]));
-        for (uint32_t k = 0; k < numbered; k++) {
-            if (nearest[k] == i)
-                cJSON_AddNumberToObject(item, "number", k + 1);
-        }
+        cJSON_AddNumberToObject(item, "number", i + 1);
+        cJSON_AddNumberToObject(item, "id", tree->reduced.ids[at_risk[i].node]);
+        cJSON_AddItemToObject(item, "distance", cli_json_float(at_risk[i].distance));
         cJSON_AddItemToArray(branches, item);
     }
+    free(at_risk);
+    return at_risk != NULL;
 }
 
 static bool report(const cli_tree *tree, uint32_t count) {
     const sdv_tree_info *info = &tree->vessel.tree.info;
     cJSON *json = cJSON_CreateObject();
+    bool ok = true;
     cJSON_AddStringToObject(json, tree->source->path ? "path" : "scene", tree->name);
     if (tree->mesh.vertex_count) {
         cJSON_AddNumberToObject(json, "vertices", tree->mesh.vertex_count);
@@ -351,11 +350,14 @@ static bool report(const cli_tree *tree, uint32_t count) {
         cJSON_AddItemToObject(json, "least_distance",
                               least < SDV_FAR ? cli_json_float(least) : cJSON_CreateNull());
         cJSON *targets = cJSON_AddArrayToObject(json, "targets");
-        for (uint32_t i = 0; i < count; i++)
-            add_target(&tree[i], targets);
+        for (uint32_t i = 0; ok && i < count; i++)
+            ok = add_target(&tree[i], targets);
     }
     add_warnings(tree, cJSON_AddArrayToObject(json, "warnings"));
-    return cli_write_json(NULL, json);
+    if (ok)
+        return cli_write_json(NULL, json);
+    cJSON_Delete(json);
+    return false;
 }
 
 /* With --link the trees are drawn in panels of the page. */

@@ -46,6 +46,23 @@ static void on_log(void *user, vsf_log_item item, lao_result result, const char 
         cli_fail("%s: %s", wall->name, text);
 }
 
+/* ---- memory ------------------------------------------------------------------------------ */
+
+static void *allocate(void *user, size_t size) {
+    (void)user;
+    return malloc(size);
+}
+
+/* Distances that are still shown while others are measured go when those are shown. */
+static void release(void *user, void *memory, size_t size) {
+    cli_wall *wall = user;
+    const char *values = wall->near.values, *first = memory;
+    if (wall->lit && values >= first && values < first + size)
+        wall->kept = memory;
+    else
+        free(memory);
+}
+
 /* ---- lines ------------------------------------------------------------------------------ */
 
 /* The speed of a point (m/s) by the array of that name, or by the length of "velocity". */
@@ -239,6 +256,17 @@ static bool find_brightness(cli_wall *wall) {
 /* A table larger than this is kept in half floats. */
 #define MOST_DISTANCES 250000000.0
 
+/* The lines' settings that go by the distances. */
+static void take_beta(cli_wall *wall) {
+    lao_settings *s = &wall->scene.sets[1].settings;
+    s->highlight_beta = (float)wall->near.beta;
+    s->set |= LAO_SET(highlight_beta);
+    if (wall->trails) {
+        s->trail_length = (float)wall->near.reach;
+        s->set |= LAO_SET(trail_length);
+    }
+}
+
 static bool measure_distances(cli_wall *wall) {
     if (wall->scene.count < 2)
         return true;
@@ -268,13 +296,37 @@ static bool measure_distances(cli_wall *wall) {
     wall->progress = (cli_progress){"measuring distances to", set->name, -1};
     wall->lit = vsf_near_make(&wall->host, &desc, &wall->near) == LAO_OK;
     cli_progress_end(&wall->progress);
-    s->highlight_beta = (float)wall->near.beta;
-    s->set |= LAO_SET(highlight_beta);
-    if (!(s->set & LAO_SET(trail_length))) {
-        s->trail_length = (float)wall->near.reach;
-        s->set |= LAO_SET(trail_length);
-    }
+    wall->trails = !(s->set & LAO_SET(trail_length));
+    take_beta(wall);
     return wall->lit && cli_go_on();
+}
+
+bool cli_wall_measure(cli_wall *wall, double beta) {
+    cli_threads *threads = cli_threads_start();
+    cli_progress progress = {"measuring distances to", wall->scene.sets[1].name, -1};
+    vsf_host host = wall->host;
+    vsf_near next = wall->near;
+    if (!threads)
+        return false;
+    host.job = cli_threads_job(threads, &progress);
+    bool ok = vsf_near_update(&host, &next, beta) == LAO_OK;
+    if (ok)
+        wall->next = next;
+    cli_progress_end(&progress);
+    cli_threads_stop(threads);
+    return ok;
+}
+
+bool cli_wall_relight(cli_wall *wall) {
+    if (!wall->next.step_count)
+        return false;
+    wall->near = wall->next;
+    memset(&wall->next, 0, sizeof wall->next);
+    free(wall->kept);
+    wall->kept = NULL;
+    wall->object.step = VSF_NONE; /* what is uploaded is of the old ones */
+    take_beta(wall);
+    return true;
 }
 
 bool cli_wall_time(cli_wall *wall, double time, lao_object_desc *update) {
@@ -631,6 +683,7 @@ bool cli_wall_load(const cli_options *options, const cli_place *place, cli_wall 
     out->host.job = cli_threads_job(out->threads, &out->progress);
     out->host.log = on_log;
     out->host.user = out;
+    out->host.allocator = (lao_allocator){allocate, release, out};
     take_settings(out);
     bool ok = load_lines(out);
     out->placed = out->scene.count > 0 || (place && place->origin);
@@ -646,6 +699,8 @@ bool cli_wall_load(const cli_options *options, const cli_place *place, cli_wall 
 }
 
 void cli_wall_free(cli_wall *wall) {
+    cli_wall_relight(wall);
+    wall->lit = false; /* nothing is kept any more */
     cli_scene_free(&wall->scene);
     vsf_object_free(&wall->object);
     vsf_near_free(&wall->near);

@@ -27,7 +27,10 @@ typedef struct cli_wall {
     cli_scene scene; /* a set that has the object, and one of lines unless there are none */
     cli_source line_source;
     vsf_near near;
-    bool lit; /* `near` is there */
+    bool lit;      /* `near` is there */
+    vsf_near next; /* its successor, if it has a step_count; see cli_wall_measure */
+    void *kept;    /* owned; the memory of near.values, which `next` has no need of */
+    bool trails;   /* the length of the lines' trails is how far they are lit */
     vsf_object object;
     vsf_settings settings;
     double range[2];      /* of --value */
@@ -52,6 +55,11 @@ bool cli_wall_mesh(cli_wall *wall);
 /* Shows a time (ms). Returns whether the object's distances changed; then `update` is for
  * lao_object_update. */
 bool cli_wall_time(cli_wall *wall, double time, lao_object_desc *update);
+/* Measures the distances for another highlight_beta (ms^2) beside all that shows the wall, which
+ * goes on with those that it has: in a thread of its own, one at a time. False: reported. */
+bool cli_wall_measure(cli_wall *wall, double beta);
+/* Shows what was measured, if there is something; what depends on it is to be shown anew. */
+bool cli_wall_relight(cli_wall *wall);
 /* What depends on the camera: --focus, and contours as further sets of lines, made anew by each
  * call. False: reported.
  */

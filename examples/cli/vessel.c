@@ -288,8 +288,23 @@ static void imply(const char *name, float value, sdv_settings *settings) {
     settings->set |= bit;
 }
 
-/* Six points of every node's sphere tell how far the tree reaches; of a union the corners of its
- * shape too. */
+/* The unit axes of a view, or of the world. */
+static void find_axes(const cli_scene *scene, float axes[6][3]) {
+    const float *d = scene->direction, *u = scene->up;
+    lao_v3 forward = lao_v3_unit(lao_v3_make(d[0], d[1], d[2]), lao_v3_make(0, 0, 1));
+    lao_v3 right = lao_v3_unit(lao_v3_cross(forward, lao_v3_make(u[0], u[1], u[2])), forward);
+    const lao_v3 own[3] = {right, lao_v3_cross(right, forward), forward};
+    memset(axes, 0, 6 * sizeof *axes);
+    for (int k = 0; k < 3; k++) {
+        axes[k][k] = 1;
+        axes[3 + k][0] = own[k].x;
+        axes[3 + k][1] = own[k].y;
+        axes[3 + k][2] = own[k].z;
+    }
+}
+
+/* Points of every node's sphere tell how far the tree reaches along the axes of the world, for its
+ * box, and along those of the view, for the picture; of a union the corners of its shape too. */
 static bool make_points(cli_tree *tree, io_lines *lines) {
     const sdv_tree *t = &tree->vessel.tree;
     const sdv_shapes *shapes = &tree->carving.shapes;
@@ -300,15 +315,17 @@ static bool make_points(cli_tree *tree, io_lines *lines) {
         lines->point_count = tree->mesh.vertex_count;
         return lines->points != NULL;
     }
-    float *to = lines->points = cli_new(6 * (size_t)t->node_count + 2 * (size_t)CLI_SHAPES, 12);
+    float *to = lines->points = cli_new(12 * (size_t)t->node_count + 2 * (size_t)CLI_SHAPES, 12);
+    float axes[6][3];
     if (!to)
         return false;
-    for (uint32_t i = 0; i < 6 * t->node_count; i++, to += 3) {
-        const lao_v4 *node = &t->nodes[i / 6];
-        to[0] = node->x;
-        to[1] = node->y;
-        to[2] = node->z;
-        to[i % 3] += i % 6 < 3 ? node->w : -node->w;
+    find_axes(&tree->scene, axes);
+    for (size_t i = 0; i < 12 * (size_t)t->node_count; i++, to += 3) {
+        const lao_v4 *node = &t->nodes[i / 12];
+        const float *axis = axes[i % 6], by = i % 12 < 6 ? node->w : -node->w;
+        to[0] = node->x + by * axis[0];
+        to[1] = node->y + by * axis[1];
+        to[2] = node->z + by * axis[2];
     }
     for (uint32_t i = 0; i < 2 * shapes->count; i++) {
         const sdv_shape *s = &shapes->shapes[i / 2];

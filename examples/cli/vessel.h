@@ -107,7 +107,9 @@ bool cli_layout_picture(const cli_tree *tree, picture *p);
 /* The 2D layout as a picture, in the colours of the tree; with a target on the distances between
  * (L19 5, Fig. 10). False: reported. */
 bool cli_flat_draw(const cli_tree *tree, picture *p);
-/* Where the edge of a branch (reduced node) has its middle in such a picture, px. */
-void cli_flat_place(const cli_tree *tree, const uint32_t size[2], uint32_t branch, double out[2]);
+/* Where a node on the edge above a branch (reduced node) lies in such a picture, px; not on the
+ * edge's ends, which other branches share. Returns how wide the edge is there, px. */
+double cli_flat_place(const cli_tree *tree, const uint32_t size[2], uint32_t branch, uint32_t node,
+                      double out[2]);
 
 #endif

@@ -48,6 +48,17 @@ static void place_of(const flat *f, uint32_t reduced, double out[2]) {
     out[1] = margin + h * (1 - (double)l->s[reduced]);
 }
 
+static double length(const lao_v4 *a, const lao_v4 *b) {
+    return hypot(hypot((double)(a->x - b->x), (double)(a->y - b->y)), (double)(a->z - b->z));
+}
+
+static float widest_of(const sdv_tree *t) {
+    float widest = 0;
+    for (uint32_t i = 0; i < t->node_count; i++)
+        widest = fmaxf(widest, t->nodes[i].w);
+    return widest;
+}
+
 static double half_width(const flat *f, uint32_t node, float widest) {
     double part = sqrt((double)(f->tree->vessel.tree.nodes[node].w / fmaxf(widest, 1e-30f)));
     return f->thin * (1 + 3 * part);
@@ -89,8 +100,7 @@ static uint32_t edge_pieces(const flat *f, uint32_t reduced, float widest, piece
     uint32_t end = r->nodes[r->parents[reduced]], node, count = 0;
     double top[2], low[2], total = 0, done = 0;
     for (node = r->nodes[reduced]; node != end && t->parents[node] != SDV_NONE; count++) {
-        const lao_v4 *a = &t->nodes[node], *b = &t->nodes[t->parents[node]];
-        total += hypot(hypot((double)(a->x - b->x), (double)(a->y - b->y)), (double)(a->z - b->z));
+        total += length(&t->nodes[node], &t->nodes[t->parents[node]]);
         node = t->parents[node];
     }
     if (!to)
@@ -100,11 +110,8 @@ static uint32_t edge_pieces(const flat *f, uint32_t reduced, float widest, piece
     node = r->nodes[reduced];
     for (uint32_t i = 0; i < (count ? count : 1); i++) {
         uint32_t above = count ? t->parents[node] : node;
-        const lao_v4 *a = &t->nodes[node], *b = &t->nodes[above];
-        double way =
-            hypot(hypot((double)(a->x - b->x), (double)(a->y - b->y)), (double)(a->z - b->z));
         double from = total > 0 ? done / total : (double)i / (count ? count : 1), until;
-        done += way;
+        done += length(&t->nodes[node], &t->nodes[above]);
         until = i + 1 >= count ? 1 : total > 0 ? done / total : (double)(i + 1) / count;
         for (int k = 0; k < 2; k++) {
             to[i].b[k] = low[k] + from * (top[k] - low[k]);
@@ -123,10 +130,8 @@ static uint32_t edge_pieces(const flat *f, uint32_t reduced, float widest, piece
 static piece *make_pieces(const flat *f, uint32_t *count) {
     const sdv_reduced *r = &f->tree->reduced;
     const sdv_tree *t = &f->tree->vessel.tree;
-    float widest = 0;
+    float widest = widest_of(t);
     *count = 0;
-    for (uint32_t i = 0; i < t->node_count; i++)
-        widest = fmaxf(widest, t->nodes[i].w);
     for (uint32_t i = 0; i < r->node_count; i++)
         *count += r->parents[i] == SDV_NONE ? 0 : edge_pieces(f, i, widest, NULL);
     piece *pieces = cli_new(*count, sizeof *pieces);
@@ -206,7 +211,7 @@ static double pattern(const flat *f, double x, double y) {
     return (double)sdv_style_ink(
         (lao_int)values[SDV_SETTING_ID_mark_style] + SDV_STYLE_STIPPLE,
         (float)(LAO_TURN * (u - floor(u + 0.5))), (float)(LAO_TURN * (v - floor(v + 0.5))),
-        values[SDV_SETTING_ID_mark_darkness], (float)(1 / period), (float)(1 / period));
+        values[SDV_SETTING_ID_mark_darkness], (float)(1 / period), (float)(1 / period), 1);
 }
 
 static void mix(double rgb[3], const double other[3], double part) {
@@ -324,13 +329,29 @@ static flat begin(const cli_tree *tree, uint32_t width, uint32_t height) {
     return f;
 }
 
-void cli_flat_place(const cli_tree *tree, const uint32_t size[2], uint32_t branch, double out[2]) {
+/* Length of the tree from a node up to another one, mm. */
+static double way_up(const sdv_tree *t, uint32_t node, uint32_t end) {
+    double sum = 0;
+    for (; node != end && t->parents[node] != SDV_NONE; node = t->parents[node])
+        sum += length(&t->nodes[node], &t->nodes[t->parents[node]]);
+    return sum;
+}
+
+double cli_flat_place(const cli_tree *tree, const uint32_t size[2], uint32_t branch, uint32_t node,
+                      double out[2]) {
     const flat f = begin(tree, size[0], size[1]);
-    double top[2];
-    place_of(&f, branch, out);
-    place_of(&f, tree->reduced.parents[branch], top);
+    const sdv_tree *t = &tree->vessel.tree;
+    uint32_t above = tree->reduced.parents[branch];
+    double whole = way_up(t, tree->reduced.nodes[branch], tree->reduced.nodes[above]), part = 0.5;
+    double top[2], low[2];
+    place_of(&f, above, top);
+    place_of(&f, branch, low);
+    if (whole > 0)
+        part = way_up(t, node, tree->reduced.nodes[above]) / whole;
+    part = fmin(fmax(part, 0.15), 0.85); /* ends are those of other branches too */
     for (int k = 0; k < 2; k++)
-        out[k] = 0.5 * (out[k] + top[k]);
+        out[k] = top[k] + part * (low[k] - top[k]);
+    return 2 * half_width(&f, node, widest_of(t));
 }
 
 bool cli_flat_draw(const cli_tree *tree, picture *p) {

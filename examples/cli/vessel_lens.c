@@ -76,15 +76,20 @@ static void aim(sdv_settings *settings, float side, const double circle[3], cons
     settings->set |= SDV_SET(lens_side) | SDV_SET(lens_x) | SDV_SET(lens_y) | SDV_SET(lens_radius);
 }
 
+void cli_lens_aim(cli_lens *lens, cli_tree *outside, const cli_shot *shot) {
+    const cli_lens_option *o = &lens->options.vessel.lens;
+    if (!o->text || !o->is_circle)
+        return;
+    aim(&lens->tree.settings, SDV_LENS_INSIDE, o->circle, shot);
+    aim(&outside->settings, SDV_LENS_OUTSIDE, o->circle, shot);
+}
+
 void cli_lens_fit(cli_lens *lens, cli_tree *outside, const cli_shot *shot) {
     const cli_lens_option *o = &lens->options.vessel.lens;
     if (!o->text)
         return;
     cli_tree_fit_period(&lens->tree, shot);
-    if (!o->is_circle) {
+    if (!o->is_circle)
         lens->tree.settings.void_style = SDV_VOID_PLAIN; /* it would be all of the picture's */
-        return;
-    }
-    aim(&lens->tree.settings, SDV_LENS_INSIDE, o->circle, shot);
-    aim(&outside->settings, SDV_LENS_OUTSIDE, o->circle, shot);
+    cli_lens_aim(lens, outside, shot);
 }

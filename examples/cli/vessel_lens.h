@@ -18,7 +18,9 @@ void cli_lens_plan(cli_options *options, cli_lens *lens);
 bool cli_lens_load(cli_lens *lens, const cli_tree *outside);
 /* Adds it to the scene of the other tree, which is prepared. False: reported. */
 bool cli_lens_prepare(cli_lens *lens, cli_tree *outside);
-/* Puts the circle where it is in the shot. */
+/* For the first shot: the period of its ink, and cli_lens_aim. */
 void cli_lens_fit(cli_lens *lens, cli_tree *outside, const cli_shot *shot);
+/* Puts the circle, if it is one, where it is in the shot. */
+void cli_lens_aim(cli_lens *lens, cli_tree *outside, const cli_shot *shot);
 
 #endif

@@ -69,7 +69,8 @@ bool cli_tree_mesh(cli_tree *tree) {
     return ok;
 }
 
-/* Of curvature, the surer the more the two curvatures differ. */
+/* Of curvature, the surer the more the two curvatures differ; squared, so that what a mesh's
+ * corners make of a ball gives way to what is known around it. */
 static bool make_directions(const vsf_mesh *mesh, float *directions) {
     float *curvatures = cli_new(mesh->vertex_count, 2 * sizeof *curvatures);
     bool ok = curvatures && vsf_curvatures(NULL, mesh, curvatures, directions) == LAO_OK;
@@ -77,7 +78,7 @@ static bool make_directions(const vsf_mesh *mesh, float *directions) {
         float a = curvatures[2 * i], b = curvatures[2 * i + 1];
         float sure = fabsf(a - b) / fmaxf(fabsf(a) + fabsf(b), 1e-9f);
         for (int k = 0; k < 3; k++)
-            directions[3 * i + (size_t)k] *= sure;
+            directions[3 * i + (size_t)k] *= sure * sure;
     }
     free(curvatures);
     return ok;

@@ -15,14 +15,11 @@ typedef struct cli_page {
 /* Divides a picture of the options' size; scaled: colours have a scale. False: reported. */
 bool cli_page_make(const cli_options *options, bool scaled, cli_page *out);
 
-/* Draws all panels (one of each kind for each tree) into a transparent picture of the options'
- * size, with numbers at the nearest branches. False: reported. */
+/* Draws all panels of what the sessions (one for each tree) have drawn and of the layouts into a
+ * transparent picture of the options' size, with numbers at the branches at risk, the nearest
+ * first, as far as there is room for them. False: reported. */
 bool cli_page_draw(const cli_page *page, const cli_tree *trees, const cli_shot *shot,
-                   const picture *solids, const picture *flats, picture *p);
-
-/* The branches at risk (reduced nodes), nearest first, CLI_NUMBERED at most; returns how many. */
-enum { CLI_NUMBERED = 9 };
-uint32_t cli_nearest_branches(const cli_tree *tree, uint32_t list[CLI_NUMBERED]);
+                   cli_session *sessions, const picture *flats, picture *p);
 
 /* Branches (reduced nodes) that come nearer than the risk; *least: the least distance, mm. */
 uint32_t cli_tree_at_risk(const cli_tree *tree, float *least);

@@ -1,5 +1,6 @@
 /* HDF5 section graphs (Blue Brain, VessMorphoVis): points[n,4] = x y z DIAMETER, structure[s,..] =
- * first point of each section, connectivity[c,2] = parent and child section. */
+ * first point of each section, connectivity[c,2] = parent and child section; and, if they are
+ * there, attributes of the points. */
 #include "io_hdf5.h"
 
 #include "io_graph.h"
@@ -29,13 +30,16 @@ typedef struct answer {
 } answer;
 enum { GOOD, MISSING, BROKEN };
 
-/* The three tables, in this order. */
+/* The three tables, and what else points may have, in this order. */
 typedef struct table_row {
     const char *name;
     uint64_t columns; /* at least */
+    bool optional;
 } table_row;
-static const table_row tables[] = {{"points", 4}, {"structure", 1}, {"connectivity", 2}};
-enum { POINTS, STRUCTURE, CONNECTIVITY, TABLES };
+static const table_row tables[] = {{"points", 4, false},       {"structure", 1, false},
+                                   {"connectivity", 2, false}, {"section_ratio", 1, true},
+                                   {"section_axis", 3, true},  {"uncertainty", 1, true}};
+enum { POINTS, STRUCTURE, CONNECTIVITY, ATTRIBUTES, TABLES = ATTRIBUTES + 3 };
 
 /* Rows and columns of a table of numbers whose values are in this file. */
 static bool take_extent(hid_t set, uint64_t columns, answer *out) {
@@ -80,6 +84,8 @@ static bool take_table(io_reader *r, const io_hdf5_child *child, const table_row
     answer a;
     if (!io_hdf5_receive(r, child, &a, sizeof a))
         return false;
+    if (a.state == MISSING && row->optional)
+        return true;
     if (a.state == MISSING)
         return io_fail(r,
                        "holds no tree: its data set '%s' is missing or damaged; points, structure "
@@ -116,6 +122,17 @@ static bool add_nodes(io_reader *r, const table *points) {
         if (!io_is_position(p))
             return io_fail(r, "has a coordinate that is not finite at point %zu", i);
         if (!io_graph_add_node(r, p, p[3] / 2, i))
+            return false;
+    }
+    return true;
+}
+
+static bool add_attributes(io_reader *r, const table *t) {
+    size_t count = t[POINTS].rows;
+    for (int i = ATTRIBUTES; i < TABLES; i++) {
+        io_view view = io_view_doubles(t[i].values, t[i].rows, (uint32_t)t[i].width);
+        if (t[i].values && !io_attach_rows(r, &r->graph->node_columns, io_text_of(tables[i].name),
+                                           &view, NULL, 0, count, 0, "point"))
             return false;
     }
     return true;
@@ -176,7 +193,8 @@ bool io_read_h5(io_reader *r, io_cursor *bytes) {
     table t[TABLES];
     memset(t, 0, sizeof t);
     if (!take_tables(r, bytes, t) || !io_graph_new(r, IO_TREE_SECTIONS) ||
-        !add_nodes(r, &t[POINTS]) || !add_sections(r, t) || !add_links(r, t))
+        !add_nodes(r, &t[POINTS]) || !add_sections(r, t) || !add_links(r, t) ||
+        !add_attributes(r, t))
         return false;
     r->graph->unit = "um"; /* the format's */
     return true;

@@ -1,11 +1,14 @@
-/* SWC: one node a line, "id type x y z radius parent"; # begins a comment. */
+/* SWC: one node a line, "id type x y z radius parent"; # begins a comment. Where the last comment
+ * before the first node has a word for each of its columns, and they are more than seven, the
+ * further words are names of attributes; the same name several times is one of several components.
+ */
 #include "io_graph.h"
 
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
-enum { COLUMNS = 7 };
+enum { COLUMNS = 7, MORE = 32 };
 
 typedef struct row {
     double value[COLUMNS];
@@ -16,9 +19,14 @@ typedef struct swc {
     io_reader *r;
     row *rows;
     size_t count, capacity;
-    size_t columns; /* 7, or 6 in files without types or without radii; 0 = not known yet */
-    bool extra;     /* there are more */
-    size_t line;    /* 1-based, of the text */
+    size_t columns;      /* 7, or 6 in files without types or without radii; 0 = not known yet */
+    bool extra;          /* there are more, without names */
+    size_t line;         /* 1-based, of the text */
+    io_text comment;     /* the last one before the first row */
+    io_text names[MORE]; /* of the columns behind the seventh */
+    size_t more;         /* how many have one */
+    double *values;      /* of those, more a row; NaN where there is no number */
+    size_t value_capacity;
 } swc;
 
 /* ---- Rows ------------------------------------------------------------------------------------ */
@@ -35,20 +43,18 @@ static io_text data_of(io_text line, size_t number) {
     return io_text_trim(line);
 }
 
-/* Numbers of a line, at most COLUMNS; *extra: there are more words. SIZE_MAX: a word is none. */
-static size_t numbers_of(io_text data, double value[COLUMNS], bool *extra) {
-    io_cursor words = {(const uint8_t *)data.at, data.size, 0};
+/* Numbers of a line, at most COLUMNS; `words` goes behind them. SIZE_MAX: a word is none. */
+static size_t numbers_of(io_cursor *words, double value[COLUMNS]) {
     io_text word;
     size_t count = 0;
-    while (io_take_word(&words, &word)) {
-        if (count == COLUMNS) {
-            *extra = true;
-            break;
-        }
+    while (count < COLUMNS && io_take_word(words, &word))
         if (!io_parse_real(word, &value[count++]))
             return SIZE_MAX;
-    }
     return count;
+}
+
+static io_cursor words_of(io_text data) {
+    return (io_cursor){(const uint8_t *)data.at, data.size, 0};
 }
 
 static bool is_whole(double value) {
@@ -60,11 +66,11 @@ io_match io_sniff_swc(const io_cursor *bytes) {
     io_text line;
     for (size_t number = 1; io_take_line(&c, &line); number++) {
         io_text data = data_of(line, number);
+        io_cursor words = words_of(data);
         double v[COLUMNS];
-        bool extra;
         if (!data.size)
             continue;
-        size_t count = numbers_of(data, v, &extra);
+        size_t count = numbers_of(&words, v);
         if ((count != 7 && count != 6) || !is_whole(v[0]) || !is_whole(v[count - 1]))
             return IO_NO;
         return count == 7 && is_whole(v[1]) ? IO_YES : IO_MAYBE;
@@ -92,13 +98,49 @@ static void find_unit(swc *s, io_text line) {
     }
 }
 
+/* Before the first row: names of its columns behind the seventh, if the last comment has as many
+ * words. */
+static void find_names(swc *s, io_text data) {
+    io_cursor cells = words_of(data), names = words_of(s->comment);
+    io_text word;
+    size_t columns = 0, count = 0;
+    while (io_take_word(&cells, &word))
+        columns++;
+    if (columns <= COLUMNS || columns > COLUMNS + MORE)
+        return;
+    for (; io_take_word(&names, &word); count++)
+        if (count >= COLUMNS && count < columns)
+            s->names[count - COLUMNS] = word;
+    s->more = count == columns ? columns - COLUMNS : 0;
+}
+
+/* The numbers of the columns behind the seventh. */
+static bool add_values(swc *s, io_cursor *words) {
+    io_text word;
+    size_t begin = (s->count - 1) * s->more;
+    double *values =
+        s->more ? io_grow(s->r, s->values, &s->value_capacity, begin + s->more, sizeof *values)
+                : NULL;
+    if (s->more && !values)
+        return false;
+    s->values = values;
+    for (size_t i = 0; i < s->more; i++)
+        if (!io_take_word(words, &word) || !io_parse_real(word, &values[begin + i]))
+            values[begin + i] = (double)NAN;
+    s->extra = s->extra || io_take_word(words, &word);
+    return true;
+}
+
 static bool add_row(swc *s, io_text data) {
     row *rows = io_grow(s->r, s->rows, &s->capacity, s->count + 1, sizeof *rows);
     if (!rows)
         return false;
     s->rows = rows;
+    if (!s->count)
+        find_names(s, data);
     row *to = &rows[s->count++];
-    size_t count = numbers_of(data, to->value, &s->extra);
+    io_cursor words = words_of(data);
+    size_t count = numbers_of(&words, to->value);
     to->line = s->line;
     if (count == SIZE_MAX)
         return io_fail(s->r, "has a word that is no number in line %zu: '%.*s'", s->line,
@@ -110,7 +152,7 @@ static bool add_row(swc *s, io_text data) {
                        "has %zu columns in line %zu; id, type, x, y, z, radius and parent are "
                        "needed",
                        count, s->line);
-    return true;
+    return add_values(s, &words);
 }
 
 static bool take_rows(swc *s, io_cursor *c) {
@@ -120,6 +162,8 @@ static bool take_rows(swc *s, io_cursor *c) {
         io_text data = data_of(line, s->line);
         if (!s->r->graph->unit)
             find_unit(s, line);
+        if (!s->count && line.size && line.at[0] == '#')
+            s->comment = (io_text){line.at + 1, line.size - 1};
         if (data.size && !add_row(s, data))
             return false;
         if (s->line % 65536 == 0 && !io_tick(s->r, c->at, 2 * c->size))
@@ -256,6 +300,25 @@ static bool check_cycles(swc *s, const uint32_t *parents) {
     return true;
 }
 
+/* Columns that follow each other under one name are one attribute. */
+static bool add_attributes(swc *s) {
+    io_columns *columns = &s->r->graph->node_columns;
+    for (size_t i = 0, n; i < s->more; i += n) {
+        for (n = 1; i + n < s->more && s->names[i].size == s->names[i + n].size &&
+                    !memcmp(s->names[i].at, s->names[i + n].at, s->names[i].size);)
+            n++;
+        double *values = io_alloc(s->r, s->count, n * sizeof *values);
+        if (!values)
+            return false;
+        for (size_t k = 0; k < s->count * n; k++)
+            values[k] = s->values[k / n * s->more + i + k % n];
+        io_view view = io_view_doubles(values, s->count, (uint32_t)n);
+        if (!io_attach_rows(s->r, columns, s->names[i], &view, NULL, 0, s->count, 0, "node"))
+            return false;
+    }
+    return true;
+}
+
 static bool build(swc *s) {
     io_reader *r = s->r;
     if (s->count >= UINT32_MAX)
@@ -276,7 +339,8 @@ static bool build(swc *s) {
             return false;
     io_view view = io_view_doubles(types, s->count, 1);
     return io_attach_rows(r, &r->graph->node_columns, io_text_of("type"), &view, NULL, 0, s->count,
-                          0, "node");
+                          0, "node") &&
+           add_attributes(s);
 }
 
 bool io_read_swc(io_reader *r, io_cursor *bytes) {
@@ -286,5 +350,7 @@ bool io_read_swc(io_reader *r, io_cursor *bytes) {
     if (!io_graph_new(r, IO_TREE_IDS) || !take_rows(&s, bytes) || !widen_rows(&s) ||
         !check_rows(&s) || !build(&s))
         return false;
-    return !s.extra || io_warn(r, "columns behind the seventh are left out");
+    return !s.extra ||
+           io_warn(r, "columns behind the seventh are left out, where the last comment before the "
+                      "nodes does not name them all");
 }

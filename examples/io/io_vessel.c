@@ -113,6 +113,12 @@ static bool build(const sdv_host *host, const io_tree *tree, const double origin
 /* From the file's unit to mm. */
 static void scale(sdv_tree *tree, double by) {
     float factor = (float)by;
+    for (uint32_t i = 0; i < tree->node_attribute_count; i++) {
+        const sdv_attribute *a = &tree->node_attributes[i];
+        float *values = (float *)a->values; /* the tree's own */
+        for (size_t k = 0; k < tree->node_count && !strcmp(a->name, SDV_UNCERTAINTY); k++)
+            values[k] *= factor;
+    }
     for (uint32_t i = 0; i < tree->node_count; i++) {
         lao_v4 *node = &tree->nodes[i];
         node->x = (float)(by * (double)node->x);

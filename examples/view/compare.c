@@ -21,8 +21,8 @@ typedef struct wish {
     cli_shot shot;
     compare_look look;
     char image[COMPARE_NAME];
-    uint32_t level, serial;
-    set_copy *sets; /* owned */
+    uint32_t level, serial, revision; /* revision: of the document */
+    set_copy *sets;                   /* owned */
 } wish;
 
 typedef struct side {
@@ -36,6 +36,7 @@ typedef struct side {
     bool open, fresh;       /* fresh: it has drawn nothing, and a first frame builds shaders */
     int backend;
     float time;
+    uint32_t revision;
     camera_pose camera;
     set_copy *sets;
 } side;
@@ -74,7 +75,8 @@ static bool open_session(side *s, const wish *w) {
     const double *contours = doc->options.surface.contours;
     bool timed = doc->command == CLI_SURFACE; /* whose distances go up with the object */
     bool aimed = timed && (contours[0] > 0 || contours[1] > 0); /* and whose lines with the scene */
-    if (s->open && s->backend == w->look.backend && (!timed || s->time == w->shot.time) &&
+    if (s->open && s->backend == w->look.backend && s->revision == w->revision &&
+        (!timed || s->time == w->shot.time) &&
         (!aimed || memcmp(&s->camera, &w->shot.camera, sizeof s->camera) == 0))
         return true;
     close_session(s);
@@ -82,6 +84,7 @@ static bool open_session(side *s, const wish *w) {
     s->open = true;
     s->backend = w->look.backend;
     s->time = w->shot.time;
+    s->revision = w->revision;
     s->camera = w->shot.camera;
     bool ok = cli_session_open(&s->session, backends[s->backend], doc->scene, &w->shot,
                                LAO_VIEW_KEEP_IMAGES);
@@ -281,6 +284,7 @@ void compare_ask(compare *c, const cli_shot *shot, const compare_look looks[2], 
         w->look = looks[i];
         w->level = level;
         w->serial = c->serial;
+        w->revision = c->doc->revision;
         strncpy(w->image, image, sizeof w->image - 1);
         for (uint32_t s = 0; s < scene->count; s++)
             copy_set(scene, s, &w->sets[s]);

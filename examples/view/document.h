@@ -3,6 +3,7 @@
 #ifndef LINEAO_VIEW_DOCUMENT_H
 #define LINEAO_VIEW_DOCUMENT_H
 
+#include "pick.h"
 #include "session.h"
 #include "surface.h"
 #include "vessel.h"
@@ -35,8 +36,12 @@ typedef struct document {
     cli_shot shot;               /* as the words ask for it */
     document_settings *settings; /* owned */
     uint32_t settings_count;
-    bool timed; /* has points with times */
-    bool added; /* files joined what was open before */
+    pickable pickable; /* the scene, for the pointer */
+    double beta;       /* ms^2, by which a wall is lit: as loaded, */
+    double new_beta;   /* and being measured */
+    uint32_t revision; /* of what is uploaded, besides what time and camera change */
+    bool timed;        /* has points with times */
+    bool added;        /* files joined what was open before */
 } document;
 
 /* Opens what the words name: a command and its flags, or files that tell by themselves which;
@@ -45,6 +50,8 @@ typedef struct document {
 document *document_open(const char *const *words, uint32_t count, uint32_t added);
 void document_close(document *doc);
 
+/* The name of a file without its folder. */
+const char *document_file_name(const char *path);
 /* A name for the title: the first file, or the scene. */
 const char *document_name(const document *doc);
 
@@ -52,8 +59,17 @@ const char *document_name(const document *doc);
 void document_set(document *doc, uint32_t index, int setting, float value);
 void document_reset(document *doc, uint32_t index, int setting);
 float document_value(const document *doc, uint32_t index, int setting);
-/* Must the document be opened again for an edit of this setting to show? */
-bool document_reloads(const document *doc, uint32_t index, int setting);
+/* What an edit of a setting needs to show. */
+typedef enum document_need { NEEDS_NOTHING, NEEDS_MEASURES, NEEDS_OPENING } document_need;
+document_need document_needs(const document *doc, uint32_t index, int setting);
+/* The second of these, in three steps: says what is wanted; measures it beside the window, in any
+ * thread (false: reported); shows it, or takes the edit back. */
+void document_wish_measured(document *doc);
+bool document_measure(document *doc);
+void document_show_measured(document *doc, bool ok);
+
+/* Moves the lens, which is a circle on the picture: --lens circle:X,Y,R. False: reported. */
+bool document_move_lens(document *doc, const double circle[3]);
 
 /* `doc` was opened with the words of `from`, edits among them: they are edits in it too, which can
  * be taken back. */
@@ -77,5 +93,12 @@ char *document_without(const document *doc, const cli_shot *shot, const char *fi
 char *document_joined(const document *doc, const cli_shot *shot);
 /* Can further files join it? Scenes made by code stand alone. */
 bool document_joins(const document *doc);
+
+/* ---- between the files that make a document ---- */
+
+/* Fills doc->settings. False: reported. */
+bool document_list_settings(document *doc);
+/* The values behind the `set` of a struct of settings. */
+float *document_values(void *settings);
 
 #endif

@@ -41,6 +41,8 @@ char *film_command(const view *v) {
 
 static bool can_start(const view *v) {
     const film *f = &v->film;
+    if (!stage_settled(v, f->path))
+        return false;
     if (!cli_is_video(f->path))
         return cli_fail("%s: is no video; its name must end in .mp4, .webm or .gif", f->path);
     if (v->shot.background[3] < 1)

@@ -108,6 +108,9 @@ static void loop(view *v) {
     v->player.loop = !v->player.loop;
     trace(v, "loop %s", v->player.loop ? "on" : "off");
 }
+static void keys_list(view *v) {
+    v->keys = !v->keys;
+}
 static void quit(view *v) {
     v->quit = true;
 }
@@ -137,6 +140,7 @@ static const struct key_row {
     {GLFW_KEY_H, "H", "hide or show the panels", panels, false, false},
     {GLFW_KEY_S, "S", "save the picture", save, true, false},
     {GLFW_KEY_C, "C", "copy the command line of this picture", copy, true, false},
+    {GLFW_KEY_F1, "F1", "this list", keys_list, false, false},
     {GLFW_KEY_ESCAPE, "Esc", "cancel a video or what is being opened; select nothing", forget,
      false, false},
     {GLFW_KEY_Q, "Q", "quit", quit, false, false},
@@ -187,7 +191,7 @@ static void find(view *v, picked *out, double from[3], double to[3]) {
     shot.width = (uint32_t)p->width;
     shot.height = (uint32_t)p->height;
     cli_shot_aim(v->doc->scene, &shot);
-    pick_at(v->doc, &shot, x, y, 4.0 / p->height, out);
+    pick_at(&v->doc->pickable, &shot, x, y, 4.0 / p->height, out);
     orbit_ray(&shot.camera, (double)p->width / p->height, x, y, from, to);
 }
 
@@ -201,19 +205,17 @@ static void click(view *v) {
           v->picked.line, v->picked.point, v->picked.at[0], v->picked.at[1], v->picked.at[2]);
 }
 
-/* One ray through a tree's field takes no time; of lines and triangles there are too many. */
 void input_hover(view *v) {
     picked found;
     double from[3], to[3];
-    if (!v->pointer.fresh || v->pointer.button >= 0 || !v->open || v->doc->command != CLI_VESSEL ||
-        v->doc->tree.mesh.vertex_count)
+    if (!v->pointer.fresh || v->pointer.button >= 0 || !v->open)
         return;
     v->pointer.fresh = false;
     memset(&found, 0, sizeof found);
     if (!ui_has_pointer() && is_inside(v, v->pointer.x, v->pointer.y))
         find(v, &found, from, to);
     if (!v->hovered_flat)
-        tree_hover(v, &found);
+        marks_hover(v, &found);
 }
 
 static void on_button(GLFWwindow *glfw, int button, int action, int mods) {
@@ -222,6 +224,7 @@ static void on_button(GLFWwindow *glfw, int button, int action, int mods) {
     if (action == GLFW_PRESS && p->button < 0 && v->open && !ui_has_pointer() &&
         is_inside(v, p->x, p->y)) {
         v->dividing = button == GLFW_MOUSE_BUTTON_LEFT && compare_grabs(v, p->x);
+        v->lensing = button == GLFW_MOUSE_BUTTON_LEFT && hands_grabs(v, p->x, p->y);
         p->button = button;
         p->shift = (mods & GLFW_MOD_SHIFT) != 0;
         p->moved = false;
@@ -230,7 +233,9 @@ static void on_button(GLFWwindow *glfw, int button, int action, int mods) {
     } else if (action == GLFW_RELEASE && button == p->button) {
         if (!p->moved && button == GLFW_MOUSE_BUTTON_LEFT && v->open && !v->dividing)
             click(v);
-        v->dividing = false;
+        else if (v->lensing && v->open)
+            hands_let_go(v);
+        v->dividing = v->lensing = false;
         p->button = -1;
     }
 }
@@ -265,10 +270,14 @@ static void on_move(GLFWwindow *glfw, double x, double y) {
     if (!p->moved) {
         before[0] = p->pressed_at[0];
         before[1] = p->pressed_at[1];
+        if (v->lensing)
+            hands_grab(v);
     }
     p->moved = true;
     if (v->dividing)
         compare_divide(v, x);
+    else if (v->lensing)
+        hands_drag(v, x - before[0], y - before[1]);
     else
         drag(v, x - before[0], y - before[1]);
 }

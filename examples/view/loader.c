@@ -71,7 +71,9 @@ struct loader {
     bool running, cancel;
     char doing[MESSAGE_SIZE];
     float part;
-    document *done;
+    document *done;     /* owned: opened */
+    document *measured; /* not owned: measured, or being measured */
+    bool ok;            /* it could be */
     cli_listener listener;
     pthread_t thread;
     bool started;
@@ -79,9 +81,18 @@ struct loader {
     uint32_t count, added;
 };
 
+static bool interrupted(void *user) {
+    loader *l = user;
+    pthread_mutex_lock(&l->lock);
+    bool cancel = l->cancel;
+    pthread_mutex_unlock(&l->lock);
+    return cancel;
+}
+
 static void say(void *user, bool failure, const char *line) {
     loader *l = user;
-    messages_add(l->messages, failure, line);
+    if (!failure || !interrupted(l)) /* who cancels knows */
+        messages_add(l->messages, failure, line);
     glfwPostEmptyEvent();
 }
 
@@ -94,20 +105,18 @@ static void progress(void *user, const char *doing, const char *name, double par
     glfwPostEmptyEvent();
 }
 
-static bool interrupted(void *user) {
-    loader *l = user;
-    pthread_mutex_lock(&l->lock);
-    bool cancel = l->cancel;
-    pthread_mutex_unlock(&l->lock);
-    return cancel;
-}
-
 static void *work(void *user) {
     loader *l = user;
+    document *opened = NULL;
+    bool ok = true;
     cli_listen(&l->listener);
-    document *doc = document_open((const char *const *)l->words, l->count, l->added);
+    if (l->measured)
+        ok = document_measure(l->measured);
+    else
+        opened = document_open((const char *const *)l->words, l->count, l->added);
     pthread_mutex_lock(&l->lock);
-    l->done = doc;
+    l->done = opened;
+    l->ok = ok;
     l->running = false;
     pthread_mutex_unlock(&l->lock);
     glfwPostEmptyEvent();
@@ -125,12 +134,19 @@ loader *loader_new(messages *m) {
     return l;
 }
 
-static void finish(loader *l) {
+void loader_cancel(loader *l) {
+    pthread_mutex_lock(&l->lock);
+    l->cancel = true;
+    pthread_mutex_unlock(&l->lock);
+}
+
+void loader_stop(loader *l) {
+    loader_cancel(l);
     if (l->started)
         pthread_join(l->thread, NULL);
     l->started = false;
     document_close(l->done);
-    l->done = NULL;
+    l->done = l->measured = NULL;
     for (uint32_t i = 0; i < l->count; i++)
         free(l->words[i]);
     free(l->words);
@@ -138,17 +154,10 @@ static void finish(loader *l) {
     l->count = 0;
 }
 
-void loader_cancel(loader *l) {
-    pthread_mutex_lock(&l->lock);
-    l->cancel = true;
-    pthread_mutex_unlock(&l->lock);
-}
-
 void loader_free(loader *l) {
     if (!l)
         return;
-    loader_cancel(l);
-    finish(l);
+    loader_stop(l);
     pthread_mutex_destroy(&l->lock);
     free(l);
 }
@@ -157,10 +166,23 @@ bool loader_start(loader *l, const char *const *words, uint32_t count) {
     return loader_add(l, words, count, 0);
 }
 
+/* What was under way has been finished. */
+static bool begin(loader *l, const char *doing) {
+    l->cancel = false;
+    l->part = 0;
+    l->running = true;
+    snprintf(l->doing, sizeof l->doing, "%s", doing);
+    l->started = pthread_create(&l->thread, NULL, work, l) == 0;
+    if (l->started)
+        return true; /* from here on the thread says when it is done */
+    l->running = false;
+    l->measured = NULL;
+    return cli_fail("no more threads to work in");
+}
+
 bool loader_add(loader *l, const char *const *words, uint32_t count, uint32_t added) {
     bool ok = true;
-    loader_cancel(l);
-    finish(l);
+    loader_stop(l);
     l->words = cli_new(count, sizeof *l->words);
     for (uint32_t i = 0; l->words && ok && i < count; i++) {
         l->words[i] = cli_new(strlen(words[i]) + 1, 1);
@@ -171,14 +193,13 @@ bool loader_add(loader *l, const char *const *words, uint32_t count, uint32_t ad
         }
     }
     l->added = added;
-    l->cancel = false;
-    l->part = 0;
-    l->running = true;
-    snprintf(l->doing, sizeof l->doing, "opening");
-    ok = ok && l->words && pthread_create(&l->thread, NULL, work, l) == 0;
-    l->started = ok;
-    l->running = ok;
-    return ok || cli_fail("out of memory");
+    return l->words && ok && begin(l, "opening");
+}
+
+bool loader_measure(loader *l, document *doc) {
+    loader_stop(l);
+    l->measured = doc;
+    return begin(l, "measuring");
 }
 
 bool loader_busy(loader *l, char text[MESSAGE_SIZE], float *part) {
@@ -194,6 +215,20 @@ document *loader_take(loader *l) {
     pthread_mutex_lock(&l->lock);
     document *doc = l->done;
     l->done = NULL;
+    pthread_mutex_unlock(&l->lock);
+    return doc;
+}
+
+bool loader_measures(loader *l) {
+    return l->measured != NULL;
+}
+
+document *loader_measured(loader *l, bool *ok) {
+    pthread_mutex_lock(&l->lock);
+    document *doc = l->running ? NULL : l->measured;
+    *ok = l->ok;
+    if (doc)
+        l->measured = NULL;
     pthread_mutex_unlock(&l->lock);
     return doc;
 }

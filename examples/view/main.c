@@ -178,6 +178,8 @@ static bool open(view *v, const arguments *a) {
 
 static void shut(view *v) {
     const window_backend *backend = v->window.backend;
+    loader_stop(v->loader);
+    document_close(v->next);
     hands_forget(v);
     stage_close(v);
     if (v->window.glfw && (v->window.gl || v->window.vk))
@@ -190,7 +192,8 @@ static void shut(view *v) {
 
 static void title(view *v) {
     char text[256];
-    snprintf(text, sizeof text, "%s - lineao (%s)", document_name(v->doc), v->window.backend->name);
+    snprintf(text, sizeof text, "%s - lineao (%s)", document_name(v->doc),
+             v->window.backend->title);
     glfwSetWindowTitle(v->window.glfw, text);
 }
 
@@ -206,19 +209,38 @@ static bool open_changed(view *v, document *doc) {
     v->fitted.camera = fitted.camera;
     v->shot.camera = camera;
     v->picked = before;
+    if (picked_on(doc->scene, &before))
+        pick_tell(doc->scene, &v->picked);
     v->player.speed = speed;
     hands_begin(v);
     return true;
 }
 
-static void take_document(view *v) {
+static void take_measured(view *v) {
+    bool ok;
+    if (v->open && loader_measured(v->loader, &ok) == v->doc)
+        stage_relight(v, ok);
+}
+
+/* A document that has been opened still wants its shaders, which takes the window's own time: a
+ * frame that says so comes first. */
+static document *next_document(view *v, bool *changed) {
+    document *doc = v->next;
     char text[MESSAGE_SIZE];
     float part;
-    bool busy = loader_busy(v->loader, text, &part), compared = v->compare != NULL;
-    document *doc = loader_take(v->loader);
-    bool changed = v->hands.reopening && v->open;
+    bool busy = loader_busy(v->loader, text, &part);
+    *changed = v->next_changed;
+    v->next = doc ? NULL : loader_take(v->loader);
+    v->next_changed = v->next && v->hands.reopening && v->open;
+    v->awake += v->next != NULL;
     if (!busy)
         v->hands.reopening = false;
+    return doc;
+}
+
+static void take_document(view *v) {
+    bool changed, compared = v->compare != NULL;
+    document *doc = next_document(v, &changed);
     if (!doc)
         return;
     v->awake = 3;
@@ -228,6 +250,7 @@ static void take_document(view *v) {
         if (!changed) {
             hands_forget(v);
             hands_begin(v);
+            memset(&v->flat, 0, sizeof v->flat);
             if (doc->options.frames)
                 v->film.count = (int)doc->options.frames;
         }
@@ -282,11 +305,15 @@ static bool draw(view *v) {
     }
     w->backend->end(w);
     double now = glfwGetTime();
-    if (v->frames != before) { /* the picture was drawn */
-        v->frame_ms =
-            1e3 * (now - (v->steady.moving && v->steady.frame > 0 ? v->steady.frame : begin));
-        if (v->steady.moving && v->steady.frame > 0)
+    if (v->frames != before) {   /* the picture was drawn */
+        v->pointer.fresh = true; /* and may show something else under the pointer */
+        v->awake += v->awake == 0;
+        bool follows = v->steady.moving && v->steady.frame > 0;
+        if (v->warm)
+            v->frame_ms = 1e3 * (now - (follows ? v->steady.frame : begin));
+        if (v->warm && follows)
             adapt(v, v->frame_ms);
+        v->warm = true;
     }
     v->steady.frame = v->steady.moving && v->frames != before ? now : 0;
     trace(v, "tick");
@@ -305,6 +332,7 @@ static bool wait(view *v) {
         glfwPollEvents();
     else
         glfwWaitEventsTimeout(busy || compared ? 0.05 : 0.5);
+    take_measured(v);
     take_document(v);
     trace_messages(v);
     keep_steady(v, glfwGetTime());
@@ -315,10 +343,15 @@ static bool wait(view *v) {
 }
 
 static void run(view *v) {
+    bool rests = false;
     v->awake = 3;
     while (!v->quit && !glfwWindowShouldClose(v->window.glfw)) {
-        if (wait(v) && !draw(v))
+        bool news = wait(v);
+        if (news && !draw(v))
             glfwWaitEventsTimeout(0.05); /* minimised, or between two sizes */
+        if (!news && !rests)
+            trace(v, "rest");
+        rests = !news;
     }
 }
 

@@ -77,7 +77,7 @@ static void choose_side(view *v, int side) {
 static bool setting_at(const view *v, int entry, int *index, int *setting) {
     for (uint32_t i = 0; i < v->doc->settings_count; i++) {
         for (uint32_t k = 0; k < v->doc->settings[i].module->setting_count; k++) {
-            if (!document_reloads(v->doc, i, (int)k) && entry-- == 0) {
+            if (document_needs(v->doc, i, (int)k) == NEEDS_NOTHING && entry-- == 0) {
                 *index = (int)i;
                 *setting = (int)k;
                 return true;
@@ -277,6 +277,7 @@ void compare_draw(view *v) {
     bool news = compare_take(v->compare);
     compare_results(v->compare, r);
     if (news) {
+        v->awake += v->awake == 0; /* the panel, which was drawn before, tells of it */
         c->ready = r[0]->pixels && r[1]->pixels;
         c->count = compare_differences(r[0], r[1]);
         for (int k = 0; k < 2 && c->ready; k++)

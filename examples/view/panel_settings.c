@@ -59,11 +59,11 @@ static void label_of(const lao_setting_row *row, char label[64]) {
 }
 
 static void changed(view *v, uint32_t index, int setting) {
-    trace(v, "set %s %g", v->doc->settings[index].module->settings[setting].name,
-          (double)document_value(v->doc, index, setting));
-    if (document_reloads(v->doc, index, setting))
-        stage_reload(v);
-    stage_changed(v, strcmp(v->doc->settings[index].module->settings[setting].name, "width") == 0);
+    document_need need = document_needs(v->doc, index, setting);
+    const char *name = v->doc->settings[index].module->settings[setting].name;
+    trace(v, "set %s %g", name, (double)document_value(v->doc, index, setting));
+    v->need = need > v->need ? need : v->need;
+    stage_changed(v, strcmp(name, "width") == 0);
 }
 
 static void row_of(view *v, uint32_t index, int setting) {
@@ -97,11 +97,12 @@ static void row_of(view *v, uint32_t index, int setting) {
 static void reset_all(view *v) {
     for (uint32_t i = 0; i < v->doc->settings_count; i++) {
         for (uint32_t k = 0; k < v->doc->settings[i].module->setting_count; k++) {
-            if (v->doc->settings[i].edited >> k & 1)
+            if (v->doc->settings[i].edited >> k & 1) {
                 document_reset(v->doc, i, (int)k);
+                changed(v, i, (int)k);
+            }
         }
     }
-    stage_changed(v, true);
 }
 
 void panel_settings(view *v) {
@@ -113,6 +114,8 @@ void panel_settings(view *v) {
     ui_scroll("settings", 0);
     for (uint32_t i = 0; i < v->doc->settings_count; i++) {
         ui_group((int)i);
+        if (*v->filter)
+            ui_unfold();
         if (ui_section(v->doc->settings[i].title, i == 0) && ui_table("rows", 3)) {
             for (uint32_t k = 0; k < v->doc->settings[i].module->setting_count; k++)
                 row_of(v, i, (int)k);

@@ -13,19 +13,30 @@ static uint32_t color_of(float h, float s) {
            (uint32_t)(255 * c.x);
 }
 
-static void place_of(const ui_area *a, const sdv_layout *layout, uint32_t node, float at[2]) {
+/* Where the tree is drawn: a place in the panel, and what of the tree it shows. */
+typedef struct flat_tree {
+    ui_area area;
+    flat_view shown;
+    const cli_tree *tree;
+} flat_tree;
+
+static void place_of(const flat_tree *f, uint32_t node, float at[2]) {
+    const ui_area *a = &f->area;
+    const flat_view *part = &f->shown;
     float border = 8 * ui_scale();
-    at[0] = a->x + border + layout->h[node] * (a->width - 2 * border);
-    at[1] = a->y + border + (1 - layout->s[node]) * (a->height - 2 * border);
+    at[0] = a->x + border +
+            (f->tree->layout.h[node] - part->left) * part->zoom * (a->width - 2 * border);
+    at[1] = a->y + border +
+            (1 - f->tree->layout.s[node] - part->top) * part->zoom * (a->height - 2 * border);
 }
 
 /* The reduced node that is drawn nearest to the pointer. */
-static uint32_t nearest(const ui_area *a, const cli_tree *tree) {
+static uint32_t nearest(const flat_tree *f) {
     uint32_t best = SDV_NONE;
     float least = 1e30f, at[2];
-    for (uint32_t i = 0; i < tree->reduced.node_count; i++) {
-        place_of(a, &tree->layout, i, at);
-        float d = hypotf(at[0] - a->pointer[0], at[1] - a->pointer[1]);
+    for (uint32_t i = 0; i < f->tree->reduced.node_count; i++) {
+        place_of(f, i, at);
+        float d = hypotf(at[0] - f->area.pointer[0], at[1] - f->area.pointer[1]);
         if (d < least) {
             least = d;
             best = i;
@@ -34,129 +45,105 @@ static uint32_t nearest(const ui_area *a, const cli_tree *tree) {
     return best;
 }
 
-static void draw(const ui_area *a, const cli_tree *tree) {
+/* The wheel zooms about the pointer, a drag moves; there is nothing beyond the whole. */
+static void move(flat_view *part, const ui_area *a) {
+    float before = part->zoom >= 1 ? part->zoom : 1;
+    float x = (a->pointer[0] - a->x) / a->width, y = (a->pointer[1] - a->y) / a->height;
+    part->zoom = fmaxf(1, fminf(64, before * powf(1.25f, a->wheel)));
+    part->left += x / before - x / part->zoom - a->moved[0] / a->width / part->zoom;
+    part->top += y / before - y / part->zoom - a->moved[1] / a->height / part->zoom;
+    part->left = fmaxf(0, fminf(1 - 1 / part->zoom, part->left));
+    part->top = fmaxf(0, fminf(1 - 1 / part->zoom, part->top));
+}
+
+/* As the end of the branch has it in the picture. */
+static uint32_t color_at(const cli_tree *tree, uint32_t branch) {
+    uint32_t cone = tree->vessel.tree.parent_segments[tree->reduced.nodes[branch]];
+    if (!tree->colors || cone >= tree->grid.cone_count)
+        return color_of(tree->layout.h[branch], tree->layout.s[branch]);
+    const uint8_t *c = tree->colors + 8 * (size_t)cone + 4;
+    return 0xff000000u | (uint32_t)c[2] << 16 | (uint32_t)c[1] << 8 | c[0];
+}
+
+static void draw(const flat_tree *f) {
+    const cli_tree *tree = f->tree;
     const sdv_reduced *reduced = &tree->reduced;
     for (uint32_t k = 0; k < reduced->node_count; k++) {
         uint32_t i = reduced->order[k], parent = reduced->parents[i];
         float from[2], to[2];
         if (parent == SDV_NONE)
             continue;
-        place_of(a, &tree->layout, parent, from);
-        place_of(a, &tree->layout, i, to);
-        ui_draw_line(false, from[0], from[1], to[0], to[1],
-                     color_of(tree->layout.h[i], tree->layout.s[i]), 1.5f * ui_scale());
+        place_of(f, parent, from);
+        place_of(f, i, to);
+        ui_draw_line(false, from[0], from[1], to[0], to[1], color_at(tree, i), 1.5f * ui_scale());
     }
 }
 
 /* The branch (reduced node) that a node of the tree lies on; SDV_NONE: none, or of another tree. */
 static uint32_t branch_of(const cli_tree *tree, const view *v, const picked *p) {
-    return tree && picked_on(v->doc, p) == tree ? tree->reduced.owners[p->point] : SDV_NONE;
+    return tree && picked_on(v->doc->scene, p) == tree ? tree->reduced.owners[p->point] : SDV_NONE;
 }
 
 /* In the flat tree: the edge of a branch, and its end. */
-static void mark_flat(const ui_area *a, const cli_tree *tree, uint32_t branch, uint32_t color) {
-    uint32_t parent = branch == SDV_NONE ? SDV_NONE : tree->reduced.parents[branch];
+static void mark_flat(const flat_tree *f, uint32_t branch, uint32_t color) {
+    uint32_t parent = branch == SDV_NONE ? SDV_NONE : f->tree->reduced.parents[branch];
     float from[2], to[2];
     if (branch == SDV_NONE)
         return;
-    place_of(a, &tree->layout, branch, to);
+    place_of(f, branch, to);
     ui_draw_disc(false, to[0], to[1], 4 * ui_scale(), color);
     if (parent == SDV_NONE)
         return;
-    place_of(a, &tree->layout, parent, from);
+    place_of(f, parent, from);
     ui_draw_line(false, from[0], from[1], to[0], to[1], color, 3 * ui_scale());
-}
-
-/* In the picture: the middle line of a branch. */
-static void mark_solid(const view *v, const cli_tree *tree, uint32_t branch, uint32_t color) {
-    const double *o = tree->vessel.origin;
-    for (uint32_t i = 0; branch != SDV_NONE && i < tree->vessel.tree.node_count; i++) {
-        uint32_t parent = tree->vessel.tree.parents[i];
-        const lao_v4 *n = &tree->vessel.tree.nodes[i], *p;
-        float from[2], to[2];
-        if (tree->reduced.owners[i] != branch || parent == SDV_NONE)
-            continue;
-        p = &tree->vessel.tree.nodes[parent];
-        const double a[3] = {(double)p->x + o[0], (double)p->y + o[1], (double)p->z + o[2]};
-        const double b[3] = {(double)n->x + o[0], (double)n->y + o[1], (double)n->z + o[2]};
-        if (stage_place(v, a, from) && stage_place(v, b, to))
-            ui_draw_line(true, from[0], from[1], to[0], to[1], color, 2.5f * ui_scale());
-    }
 }
 
 /* The tree that is laid out, if it has branches, or NULL. */
 static const cli_tree *shown_tree(const view *v) {
-    const cli_tree *tree = v->open ? picked_tree(v->doc, &v->picked) : NULL;
+    const cli_tree *tree = v->open ? picked_tree(v->doc->scene, &v->picked) : NULL;
     return tree && tree->reduced.node_count > 0 ? tree : NULL;
 }
 
-void tree_hover(view *v, const picked *at) {
-    const cli_tree *tree = shown_tree(v);
-    uint32_t before = tree ? branch_of(tree, v, &v->hovered) : SDV_NONE;
-    v->hovered = *at;
-    uint32_t now = tree ? branch_of(tree, v, at) : SDV_NONE;
-    if (now != before && now != SDV_NONE)
-        trace(v, "hovers %u", tree->reduced.nodes[now]);
-}
-
-/* Beside the pointer: what it is on. */
-static void tell_hovered(const view *v) {
-    const cli_tree *tree = picked_on(v->doc, &v->hovered);
-    uint32_t node = v->hovered.point, branch = branch_of(tree, v, &v->hovered);
-    char text[96], near[48] = "";
-    if (tree->distances && branch != SDV_NONE)
-        snprintf(near, sizeof near, ", %.3g mm from the target", (double)tree->distances[branch]);
-    snprintf(text, sizeof text, "node %u, radius %.3g mm%s", node,
-             (double)tree->vessel.tree.nodes[node].w, near);
-    float s = ui_scale(), wide = ui_text_width(text);
-    float right = (float)(v->picture.x + v->picture.width) - wide - 6 * s;
-    float x = fminf((float)v->pointer.x + 14 * s, right), y = (float)v->pointer.y + 14 * s;
-    ui_draw_box(true, x - 4 * s, y - 2 * s, x + wide + 4 * s, y + ui_text_height(), 0xd0202020);
-    ui_draw_text(true, x, y, 0xffffffff, text);
-}
-
-void tree_marks(const view *v) {
-    const cli_tree *tree = shown_tree(v);
-    if (!tree || v->picture.width < 1)
-        return;
-    mark_solid(v, tree, branch_of(tree, v, &v->picked), 0xff1030f0);
-    mark_solid(v, tree, branch_of(tree, v, &v->hovered), 0xffffffff);
-    if (picked_on(v->doc, &v->hovered) && !v->hovered_flat && v->pointer.button < 0)
-        tell_hovered(v);
-}
-
-void panel_tree(view *v) {
-    const cli_tree *tree = shown_tree(v);
-    float width;
-    char text[128];
+/* What the pointer is on is marked in both views, and what is clicked is told. */
+static void point(view *v, const flat_tree *f) {
+    uint32_t over = f->area.hovered ? nearest(f) : SDV_NONE;
     picked found;
-    if (v->doc->command == CLI_VESSEL) /* which has targets and cuts */
-        hands_tree(v);
-    ui_space();
-    if (!tree)
-        return;
-    ui_text_dim("The branches side by side, the root above. Point at one, or click it, here or in "
-                "the picture.");
-    ui_width_left(&width);
-    ui_area a = ui_canvas("layout", width, 1.2f * width);
-    ui_draw_box(false, a.x, a.y, a.x + a.width, a.y + a.height, 0xff202224);
-    draw(&a, tree);
-    uint32_t over = a.hovered ? nearest(&a, tree) : SDV_NONE;
     if (over != SDV_NONE) {
-        uint32_t node = tree->reduced.nodes[over];
-        pick_node(v->doc, tree, node, &found);
-        tree_hover(v, &found);
-        snprintf(text, sizeof text, "node %u", node);
-        ui_help(text);
-        if (a.pressed && v->picked.point != node) {
-            v->picked = found;
-            stage_select(v);
-            trace(v, "node %u", node);
-        }
+        pick_node(v->doc->scene, f->tree, f->tree->reduced.nodes[over], &found);
+        marks_hover(v, &found);
+        ui_help(found.title);
     } else if (v->hovered_flat) {
         memset(&v->hovered, 0, sizeof v->hovered);
     }
     v->hovered_flat = over != SDV_NONE;
-    mark_flat(&a, tree, branch_of(tree, v, &v->picked), 0xff1030f0);
-    mark_flat(&a, tree, branch_of(tree, v, &v->hovered), 0xffffffff);
+    if (over == SDV_NONE || !f->area.clicked)
+        return;
+    v->picked = found;
+    stage_select(v);
+    trace(v, "node %u", found.point);
+}
+
+void panel_tree(view *v) {
+    flat_tree f = {.tree = shown_tree(v)};
+    float width;
+    if (v->doc->command == CLI_VESSEL) /* which has targets and cuts */
+        hands_tree(v);
+    ui_space();
+    if (!f.tree)
+        return;
+    ui_text_dim("The branches side by side, the root above. Point at one, or click it, here or in "
+                "the picture. Wheel: larger. Drag: move.");
+    ui_width_left(&width);
+    f.area = ui_canvas("layout", width, 1.2f * width);
+    move(&v->flat, &f.area);
+    f.shown = v->flat;
+    const window_rect place = {(int)f.area.x, (int)f.area.y, (int)f.area.width, (int)f.area.height};
+    point(v, &f);
+    ui_draw_box(false, f.area.x, f.area.y, f.area.x + f.area.width, f.area.y + f.area.height,
+                0xff202224);
+    ui_clip(false, place);
+    draw(&f);
+    mark_flat(&f, branch_of(f.tree, v, &v->picked), 0xff1030f0);
+    mark_flat(&f, branch_of(f.tree, v, &v->hovered), 0xffffffff);
+    ui_clip_end(false);
 }

@@ -84,7 +84,7 @@ static void draw_timeline(view *v, double first, double length) {
                 0xffe09a4a);
     ui_draw_disc(false, a.x + (float)part * a.width, middle, 6 * line, 0xfff0f0f0);
     for (int i = 0; i <= 4; i++) {
-        snprintf(text, sizeof text, i == 4 ? "%.0f ms" : "%.0f", first + i * length / 4);
+        snprintf(text, sizeof text, i == 4 ? "%.4g ms" : "%.4g", first + i * length / 4);
         float at = a.x + (float)i * 0.25f * a.width, wide = ui_text_width(text);
         ui_draw_text(false,
                      i == 4 ? at - wide

@@ -70,6 +70,9 @@ static bool start(view *v) {
 bool stage_open(view *v, document *doc) {
     stage_close(v);
     v->doc = doc;
+    v->need = NEEDS_NOTHING;
+    v->frame_ms = 0;
+    v->warm = false;
     v->shot = v->fitted = doc->shot;
     v->aimed = doc->shot.camera;
     find_bounds(v);
@@ -106,8 +109,18 @@ static void open_text(view *v, char *words, const char *const *files, uint32_t c
     free(words);
 }
 
-void stage_reload(view *v) {
-    open_text(v, document_words(v->doc, &v->shot), NULL, 0);
+void stage_answer(view *v) {
+    document_need need = v->need;
+    if (ui_active())
+        return;
+    v->need = NEEDS_NOTHING;
+    if (need == NEEDS_OPENING) {
+        open_text(v, document_words(v->doc, &v->shot), NULL, 0);
+    } else if (need == NEEDS_MEASURES) {
+        loader_stop(v->loader);
+        document_wish_measured(v->doc);
+        loader_measure(v->loader, v->doc);
+    }
 }
 
 void stage_add(view *v, const char *const *files, uint32_t count) {
@@ -155,18 +168,18 @@ static void corner_of(const view *v, float corner[3]) {
         corner[k] = up[k] < 0 ? v->bounds[1][k] : v->bounds[0][k];
 }
 
-static void make_axes(const view *v, const float clip[16], window_box boxes[3]) {
+static void make_axes(const view *v, const float clip[16], window_box bars[3]) {
     static const float colors[3][4] = {
         {0.80f, 0.30f, 0.25f, 1}, {0.36f, 0.62f, 0.30f, 1}, {0.25f, 0.42f, 0.80f, 1}};
     float corner[3], radius = v->shot.sphere[3], thick = 0.006f * radius;
     corner_of(v, corner);
-    memset(boxes, 0, 3 * sizeof *boxes);
+    memset(bars, 0, 3 * sizeof *bars);
     for (int i = 0; i < 3; i++) {
-        memcpy(boxes[i].clip, clip, sizeof boxes[i].clip);
-        memcpy(boxes[i].color, colors[i], sizeof colors[i]);
+        memcpy(bars[i].clip, clip, sizeof bars[i].clip);
+        memcpy(bars[i].color, colors[i], sizeof colors[i]);
         for (int k = 0; k < 3; k++) {
-            boxes[i].lower[k] = corner[k] - thick;
-            boxes[i].upper[k] = corner[k] + (i == k ? 0.5f * radius : thick);
+            bars[i].lower[k] = corner[k] - thick;
+            bars[i].upper[k] = corner[k] + (i == k ? 0.5f * radius : thick);
         }
     }
 }
@@ -260,7 +273,7 @@ static bool render(view *v, cli_shot *shot, bool small) {
     lao_image color, depth;
     lao_import import;
     lao_frame frame;
-    window_box boxes[3];
+    window_box bars[3];
     float clip[16];
     bool own = v->ground || v->axes;
     int slot = small ? SLOT_MOVING : SLOT_REST;
@@ -277,7 +290,7 @@ static bool render(view *v, cli_shot *shot, bool small) {
     else
         stage_aim(v, shot);
     multiply(shot->projection, shot->view, clip);
-    make_axes(v, clip, boxes);
+    make_axes(v, clip, bars);
     memcpy(sets, v->session.sets, count * sizeof *sets);
     if (small)
         lighten(v, sets, settings, count);
@@ -286,7 +299,7 @@ static bool render(view *v, cli_shot *shot, bool small) {
     frame.set_count = count + add_selection(v, &sets[count], &settings[count]);
     frame.view = small ? v->moving_view : v->session.view;
     bool ok = fit_view(v, frame.view, shot->width, shot->height) &&
-              w->backend->canvas(w, slot, shot->width, shot->height, shot->background, boxes,
+              w->backend->canvas(w, slot, shot->width, shot->height, shot->background, bars,
                                  v->axes ? 3 : 0, &color, &depth, &frame.commands);
     /* quote frame */
     import.image = "host_depth";
@@ -366,6 +379,14 @@ void stage_time(view *v) {
     v->dirty = true;
 }
 
+void stage_relight(view *v, bool ok) {
+    compare_lock(v->compare);
+    document_show_measured(v->doc, ok);
+    compare_unlock(v->compare);
+    stage_time(v);
+    trace(v, "measured %g", v->doc->wall.near.beta);
+}
+
 void stage_fit(view *v) {
     camera_fit fit;
     camera_pose *pose = &v->shot.camera;
@@ -437,12 +458,19 @@ void stage_select(view *v) {
 
 /* ---- pictures in files ------------------------------------------------------------------- */
 
+bool stage_settled(const view *v, const char *path) {
+    return !loader_measures(v->loader) ||
+           cli_fail("%s: distances to the flow are being measured; save it when they are", path);
+}
+
 bool stage_save(view *v, const char *path, uint32_t width, uint32_t height) {
     cli_session session = v->session;
     cli_shot shot = v->shot;
     lao_view_desc size = {width, height, 0};
     shot.width = width;
     shot.height = height;
+    if (!stage_settled(v, path))
+        return false;
     cli_shot_aim(v->doc->scene, &shot);
     stage_aim(v, &shot);
     v->window.backend->wait(&v->window);

@@ -206,7 +206,7 @@ void ui_panel_end(void) {
 bool ui_dialog(const char *name, window_rect at, bool *open) {
     ImGui::SetNextWindowPos(
         ImVec2((float)at.x + (float)at.width * 0.5f, (float)at.y + (float)at.height * 0.5f),
-        ImGuiCond_Appearing, ImVec2(0.5f, 0.5f));
+        ImGuiCond_Always, ImVec2(0.5f, 0.5f));
     ImGui::SetNextWindowSizeConstraints(ImVec2((float)at.width * 0.5f, 0),
                                         ImVec2((float)at.width, (float)at.height));
     bool shown = ImGui::Begin(name, open,
@@ -243,6 +243,10 @@ void ui_tab_end(void) {
 
 bool ui_section(const char *name, bool open) {
     return placed(name, ImGui::CollapsingHeader(name, open ? ImGuiTreeNodeFlags_DefaultOpen : 0));
+}
+
+void ui_unfold(void) {
+    ImGui::SetNextItemOpen(true);
 }
 
 void ui_group(int id) {
@@ -356,14 +360,17 @@ void ui_progress(float part, const char *text) {
     ImGui::ProgressBar(part, ImVec2(-1, 0), text);
 }
 
-void ui_help(const char *text) {
-    if (!ImGui::IsItemHovered(ImGuiHoveredFlags_AllowWhenDisabled))
-        return;
+void ui_tip(const char *text) {
     ImGui::BeginTooltip();
     ImGui::PushTextWrapPos(ImGui::GetFontSize() * 26);
     ImGui::TextUnformatted(text);
     ImGui::PopTextWrapPos();
     ImGui::EndTooltip();
+}
+
+void ui_help(const char *text) {
+    if (ImGui::IsItemHovered(ImGuiHoveredFlags_AllowWhenDisabled))
+        ui_tip(text);
 }
 
 bool ui_hovered(void) {
@@ -414,16 +421,27 @@ void ui_disable_end(void) {
 // ---- drawing ----
 
 ui_area ui_canvas(const char *label, float width, float height) {
-    ImVec2 at = ImGui::GetCursorScreenPos(), pointer = ImGui::GetIO().MousePos;
-    ImGui::InvisibleButton(label, ImVec2(width, height));
+    ImGuiIO &io = ImGui::GetIO();
+    ImVec2 at = ImGui::GetCursorScreenPos(), dragged = ImGui::GetMouseDragDelta(0);
+    bool let_go = ImGui::InvisibleButton(label, ImVec2(width, height));
+    ImGui::SetItemUsingMouseWheel(); // it does not scroll the panel
     placed(label, false);
-    ui_area area = {at.x,
-                    at.y,
-                    width,
-                    height,
-                    {pointer.x, pointer.y},
-                    ImGui::IsItemHovered(),
-                    ImGui::IsItemActive()};
+    ui_area area = {};
+    area.x = at.x;
+    area.y = at.y;
+    area.width = width;
+    area.height = height;
+    area.pointer[0] = io.MousePos.x;
+    area.pointer[1] = io.MousePos.y;
+    area.hovered = ImGui::IsItemHovered();
+    area.pressed = ImGui::IsItemActive();
+    area.clicked = let_go && dragged.x == 0 && dragged.y == 0;
+    if (area.pressed && ImGui::IsMouseDragging(0)) {
+        area.moved[0] = io.MouseDelta.x;
+        area.moved[1] = io.MouseDelta.y;
+    }
+    if (area.hovered)
+        area.wheel = io.MouseWheel;
     return area;
 }
 
@@ -439,8 +457,21 @@ void ui_draw_disc(bool over, float x, float y, float radius, uint32_t color) {
     list_of(over)->AddCircleFilled(ImVec2(x, y), radius, color_of(color));
 }
 
+void ui_draw_ring(bool over, float x, float y, float radius, uint32_t color, float width) {
+    list_of(over)->AddCircle(ImVec2(x, y), radius, color_of(color), 0, width);
+}
+
 void ui_draw_text(bool over, float x, float y, uint32_t color, const char *text) {
     list_of(over)->AddText(ImVec2(x, y), color_of(color), text);
+}
+
+void ui_clip(bool over, window_rect at) {
+    list_of(over)->PushClipRect(ImVec2((float)at.x, (float)at.y),
+                                ImVec2((float)(at.x + at.width), (float)(at.y + at.height)));
+}
+
+void ui_clip_end(bool over) {
+    list_of(over)->PopClipRect();
 }
 
 float ui_text_width(const char *text) {

@@ -53,6 +53,7 @@ void ui_tabs_end(void);
 bool ui_tab(const char *name);
 void ui_tab_end(void);
 bool ui_section(const char *name, bool open);
+void ui_unfold(void); /* the next section, whatever the user has done with it */
 /* Widgets of equal labels are told apart by this. */
 void ui_group(int id);
 void ui_group_end(void);
@@ -83,6 +84,7 @@ bool ui_input(const char *label, char *text, int size, const char *hint);
 bool ui_item(const char *label, bool selected); /* of a list */
 void ui_progress(float part, const char *text);
 void ui_help(const char *text); /* of the widget before, when the pointer rests on it */
+void ui_tip(const char *text);  /* beside the pointer */
 bool ui_hovered(void);          /* the widget before */
 void ui_same_line(void);
 void ui_space(void);
@@ -101,14 +103,20 @@ void ui_disable_end(void);
 /* A place of that size in the panel for drawing; says where it is and whether it is clicked. */
 typedef struct ui_area {
     float x, y, width, height, pointer[2];
+    float moved[2], wheel; /* since the last frame: dragged by the button, turned over it */
     bool hovered, pressed; /* pressed: the button is down since it was pressed here */
+    bool clicked;          /* it has been let go where it was pressed */
 } ui_area;
 ui_area ui_canvas(const char *label, float width, float height);
 /* Colours: 0xAABBGGRR. Over the whole window with `over`, else in the panel. */
 void ui_draw_line(bool over, float ax, float ay, float bx, float by, uint32_t color, float width);
 void ui_draw_box(bool over, float ax, float ay, float bx, float by, uint32_t color);
 void ui_draw_disc(bool over, float x, float y, float radius, uint32_t color);
+void ui_draw_ring(bool over, float x, float y, float radius, uint32_t color, float width);
 void ui_draw_text(bool over, float x, float y, uint32_t color, const char *text);
+/* What is drawn until the end is cut off at the borders of a part of the window. */
+void ui_clip(bool over, window_rect place);
+void ui_clip_end(bool over);
 float ui_text_width(const char *text);
 float ui_text_height(void);
 void ui_copy(const char *text); /* to the clipboard */

@@ -1,6 +1,6 @@
 /* The viewer's state, and who changes it: stage.c draws a document into the window, input.c takes
  * pointer and keys, player.c the time, pick.c what was clicked, hands.c what is done with that,
- * film.c videos, panel*.c the user interface. */
+ * marks.c what is marked in the picture, film.c videos, panel*.c the user interface. */
 #ifndef LINEAO_VIEW_VIEW_H
 #define LINEAO_VIEW_VIEW_H
 
@@ -48,6 +48,12 @@ typedef struct hands {
     bool stale;                      /* a slider has been moved, and not yet let go */
 } hands;
 
+/* Which part of the flat tree is shown. */
+typedef struct flat_view {
+    float zoom;      /* 1, or 0 at first: all of it */
+    float left, top; /* in parts of the whole */
+} flat_view;
+
 /* A video that is being made. */
 typedef struct film {
     char path[PATH_SIZE];
@@ -80,7 +86,9 @@ typedef struct view {
     cli_listener listener;
     bool trace; /* tells a test what happens, on standard output */
 
-    document *doc; /* NULL: nothing is open yet */
+    document *doc;     /* NULL: nothing is open yet */
+    document *next;    /* is to be shown after the next frame, or NULL */
+    bool next_changed; /* it is this document, changed by hand */
     cli_session session;
     bool open; /* the session is */
     lao_view moving_view;
@@ -88,27 +96,32 @@ typedef struct view {
     camera_pose aimed;     /* for which contours were made */
     float bounds[2][3];    /* mm about the scene's origin */
 
+    document_need need;          /* of edits, once the widget is let go */
     window_rect picture;         /* where in the window; px */
     bool dirty;                  /* the canvas is older than what it shows */
     int drawn[SLOT_CANVASES][2]; /* sizes of what the canvases hold; 0: nothing */
+    bool keys;                   /* their list is shown */
     bool unfitted;               /* the camera has not been fitted into the window */
     int awake;                   /* frames of the user interface still to be drawn */
     bool ground, axes, turntable, panels, quit;
-    double frame_ms;
+    double frame_ms; /* of the last frame that built no shaders; 0: none */
+    bool warm;       /* they are built */
     uint32_t frames;
 
     steady steady;
     player player;
     pointer pointer;
-    picked picked, hovered; /* hovered: of a tree alone */
-    bool hovered_flat;      /* in the 2D view */
+    picked picked, hovered;
+    bool hovered_flat; /* in the 2D view */
+    flat_view flat;
     hands hands;
     film film;
     lao_lines picked_lines; /* the selected line once more, on top */
     compare *compare;       /* NULL: there is one picture */
     comparison comparison;
     bool compare_first; /* begin with it */
-    bool dividing;      /* the pointer moves the divider */
+    bool dividing;      /* the pointer moves the divider, */
+    bool lensing;       /* or the lens */
 
     camera_pose bookmarks[BOOKMARKS];
     bool bookmarked[BOOKMARKS];
@@ -139,10 +152,14 @@ void stage_fit(view *v);
 void stage_fit_first(view *v);
 /* Writes the picture as `lineao render` would. False: reported. */
 bool stage_save(view *v, const char *path, uint32_t width, uint32_t height);
+/* Is the picture that of the settings? False: reported, it will be. */
+bool stage_settled(const view *v, const char *path);
 /* Shows the picked line on top. */
 void stage_select(view *v);
-/* Opens the same document again with what was edited. */
-void stage_reload(view *v);
+/* Begins what edits need: opens the same document again, or measures in it. */
+void stage_answer(view *v);
+/* Shows what was measured. */
+void stage_relight(view *v, bool ok);
 /* Opens files beside what is open, where that can be; takes one of several away again. */
 void stage_add(view *v, const char *const *files, uint32_t count);
 void stage_remove(view *v, const char *file);
@@ -159,6 +176,14 @@ void input_hover(view *v);
 /* Draws of the keys table, for the panel. */
 uint32_t input_keys(uint32_t i, const char **key, const char **help);
 
+/* ---- marks.c ---- */
+
+/* What the pointer is on now, in the picture or in the flat tree. */
+void marks_hover(view *v, const picked *at);
+void marks_draw(const view *v);
+/* A straight way between two places (mm, absolute). */
+void marks_way(const view *v, const double a[3], const double b[3], uint32_t color, float width);
+
 /* ---- hands.c ---- */
 
 /* A document was opened: sizes that suit it. */
@@ -167,6 +192,12 @@ void hands_begin(view *v);
 void hands_forget(view *v);
 /* A click while a path is being placed; the pointer's ray, mm, absolute. */
 void hands_click(view *v, const double from[3], const double to[3]);
+/* A lens on the picture: is its ring at that place of the window? Then it can be taken, moved (px)
+ * and left there. */
+bool hands_grabs(const view *v, double x, double y);
+void hands_grab(view *v);
+void hands_drag(view *v, double x, double y);
+void hands_let_go(view *v);
 /* Of the picked place; of a focus that is on; of the tab of the tree. */
 void hands_buttons(view *v);
 void hands_focus(view *v);
@@ -205,14 +236,16 @@ void player_panel(view *v, window_rect place);
 
 /* The user interface of a frame; says where the picture goes. */
 void panel_draw(view *v);
+/* Its tabs; the list of keys. */
+void panel_scene(view *v);
+void panel_view(view *v);
+void panel_save(view *v);
+void panel_keys(void);
 void panel_settings(view *v);
 /* The widget of a setting, and its help. */
 bool panel_edit(const lao_setting_row *row, float *value);
 void panel_explain(const lao_setting_row *row);
 void panel_tree(view *v);
-/* What the pointer is on now, in either view of a tree. */
-void tree_hover(view *v, const picked *at);
-void tree_marks(const view *v);
 
 /* ---- panel_compare.c ---- */
 

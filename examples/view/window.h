@@ -56,7 +56,7 @@ typedef struct window {
 } window;
 
 typedef struct window_backend {
-    const char *name; /* "gl", "vk" */
+    const char *name, *title; /* "gl", "OpenGL"; "vk", "Vulkan" */
     /* Makes window, device and user interface. False: reported; close it in any case. */
     bool (*open)(window *w, const char *title, int width, int height);
     void (*close)(window *w);

@@ -319,5 +319,5 @@ static void wait(window *w) {
     w->gl->Finish();
 }
 
-const window_backend window_gl_backend = {"gl",   open, close,  lend, begin, canvas,
-                                          ground, drop, upload, show, end,   wait};
+const window_backend window_gl_backend = {"gl",   "OpenGL", open,   close, lend, begin, canvas,
+                                          ground, drop,     upload, show,  end,  wait};

@@ -720,5 +720,5 @@ static void wait(window *w) {
     vkDeviceWaitIdle(w->vk->device);
 }
 
-const window_backend window_vk_backend = {"vk",   open, close,  lend, begin, canvas,
-                                          ground, drop, upload, show, end,   wait};
+const window_backend window_vk_backend = {"vk",   "Vulkan", open,   close, lend, begin, canvas,
+                                          ground, drop,     upload, show,  end,  wait};

@@ -9,10 +9,11 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
-static char *slurp(const char *path) {
+/* NULL where it cannot be read. */
+static char *load(const char *path) {
     FILE *file = fopen(path, "rb");
     if (!file)
-        return calloc(1, 1);
+        return NULL;
     fseek(file, 0, SEEK_END);
     long size = ftell(file);
     rewind(file);
@@ -20,8 +21,14 @@ static char *slurp(const char *path) {
     if (text && fread(text, 1, (size_t)size, file) != (size_t)size)
         text[0] = '\0';
     fclose(file);
-    remove(path);
     return text;
+}
+
+/* What a run said, whose file goes. */
+static char *take(const char *path) {
+    char *text = load(path);
+    remove(path);
+    return text ? text : calloc(1, 1);
 }
 
 /* In the child. A signal that is blocked and pending stays so in the new program. */
@@ -65,8 +72,8 @@ program_run program_start(const char *program, bool interrupted, const char *lin
     int status;
     if (child > 0 && waitpid(child, &status, 0) == child)
         run.code = WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
-    run.out = slurp(out);
-    run.err = slurp(err);
+    run.out = take(out);
+    run.err = take(err);
     return run;
 }
 
@@ -80,4 +87,30 @@ int program_lines(const char *text) {
     for (; *text; text++)
         count += *text == '\n';
     return count;
+}
+
+void expect_fault(program_run run, int code, const char *word) {
+    if (run.code != code || !strstr(run.err, word))
+        print_error("expected %d and '%s', got %d: %s", code, word, run.code, run.err);
+    assert_int_equal(run.code, code);
+    assert_int_equal(program_lines(run.err), 1);
+    assert_int_equal(strncmp(run.err, "lineao: ", 8), 0);
+    assert_non_null(strstr(run.err, word));
+    assert_string_equal(run.out, "");
+    program_free(&run);
+}
+
+char *read_text(const char *path) {
+    char *text = load(path);
+    assert_non_null(text);
+    assert_true(text[0] != 0);
+    return text;
+}
+
+cJSON *read_json(const char *path) {
+    char *text = read_text(path);
+    cJSON *json = cJSON_Parse(text);
+    assert_non_null(json);
+    free(text);
+    return json;
 }

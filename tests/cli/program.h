@@ -2,7 +2,14 @@
 #ifndef LINEAO_TEST_PROGRAM_H
 #define LINEAO_TEST_PROGRAM_H
 
+#include <setjmp.h>
+#include <stdarg.h>
 #include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#include <cjson/cJSON.h>
+#include <cmocka.h>
 
 /* What one run left behind; program_free releases it. */
 typedef struct program_run {
@@ -17,5 +24,13 @@ void program_free(program_run *run);
 
 /* Lines of a text. */
 int program_lines(const char *text);
+
+/* Ends the test unless the run failed with this code, nothing on standard output, and one line that
+ * begins "lineao: " and holds `word`. Releases it. */
+void expect_fault(program_run run, int code, const char *word);
+
+/* All of a file that is not empty; for the caller's free() and cJSON_Delete(). */
+char *read_text(const char *path);
+cJSON *read_json(const char *path);
 
 #endif

@@ -35,36 +35,6 @@ static void expect_ok(program_run run) {
     program_free(&run);
 }
 
-/* One line that begins "lineao: " and holds every one of `words`, and nothing else. */
-static void expect_fault(program_run run, int code, const char *word) {
-    if (run.code != code || !strstr(run.err, word))
-        print_error("expected %d and '%s', got %d: %s", code, word, run.code, run.err);
-    assert_int_equal(run.code, code);
-    assert_int_equal(program_lines(run.err), 1);
-    assert_int_equal(strncmp(run.err, "lineao: ", 8), 0);
-    assert_non_null(strstr(run.err, word));
-    assert_string_equal(run.out, "");
-    program_free(&run);
-}
-
-static char *read_text(const char *path) {
-    FILE *file = fopen(path, "rb");
-    assert_non_null(file);
-    char *text = calloc(1, 1 << 16);
-    assert_non_null(text);
-    assert_true(fread(text, 1, (1 << 16) - 1, file) > 0);
-    fclose(file);
-    return text;
-}
-
-static cJSON *read_json(const char *path) {
-    char *text = read_text(path);
-    cJSON *json = cJSON_Parse(text);
-    assert_non_null(json);
-    free(text);
-    return json;
-}
-
 static bool same_pictures(const char *a, const char *b) {
     uint32_t size[4];
     uint8_t *x, *y;

@@ -50,17 +50,6 @@ static void expect_ok(program_run run) {
     program_free(&run);
 }
 
-static void expect_fault(program_run run, int code, const char *word) {
-    if (run.code != code || !strstr(run.err, word))
-        print_error("expected %d and '%s', got %d: %s", code, word, run.code, run.err);
-    assert_int_equal(run.code, code);
-    assert_int_equal(program_lines(run.err), 1);
-    assert_int_equal(strncmp(run.err, "lineao: ", 8), 0);
-    assert_non_null(strstr(run.err, word));
-    assert_string_equal(run.out, "");
-    program_free(&run);
-}
-
 static double number(const cJSON *object, const char *key) {
     const cJSON *item = cJSON_GetObjectItem(object, key);
     assert_true(cJSON_IsNumber(item));

@@ -73,19 +73,6 @@ static void write_lines(const char *path, const char *array) {
     assert_int_equal(fclose(file), 0);
 }
 
-static char *read_text(const char *path) {
-    FILE *file = fopen(path, "rb");
-    assert_non_null(file);
-    fseek(file, 0, SEEK_END);
-    size_t size = (size_t)ftell(file);
-    rewind(file);
-    char *text = calloc(size + 1, 1);
-    assert_non_null(text);
-    assert_true(fread(text, 1, size, file) == size);
-    fclose(file);
-    return text;
-}
-
 /* Are two files the same, byte by byte? */
 static bool same_files(const char *a, const char *b) {
     FILE *x = fopen(a, "rb"), *y = fopen(b, "rb");
@@ -98,14 +85,6 @@ static bool same_files(const char *a, const char *b) {
     fclose(x);
     fclose(y);
     return p == q;
-}
-
-static cJSON *read_json(const char *path) {
-    char *text = read_text(path);
-    cJSON *json = cJSON_Parse(text);
-    assert_non_null(json);
-    free(text);
-    return json;
 }
 
 /* The numbers of an array of rows of `width`; null is NaN. For free(). */
@@ -134,17 +113,6 @@ static void expect_ok(program_run run) {
     assert_string_equal(run.out, "");
     for (const char *at = run.err; *at; at = strchr(at, '\n') + 1)
         assert_non_null(strstr(at, ": warning: "));
-    program_free(&run);
-}
-
-static void expect_fault(program_run run, int code, const char *word) {
-    if (run.code != code || !strstr(run.err, word))
-        print_error("expected %d and '%s', got %d: %s", code, word, run.code, run.err);
-    assert_int_equal(run.code, code);
-    assert_int_equal(program_lines(run.err), 1);
-    assert_int_equal(strncmp(run.err, "lineao: ", 8), 0);
-    assert_non_null(strstr(run.err, word));
-    assert_string_equal(run.out, "");
     program_free(&run);
 }
 

@@ -32,13 +32,6 @@ static void expect_ok(program_run run) {
     program_free(&run);
 }
 
-static void expect_fault(program_run run, int code, const char *word) {
-    if (run.code != code || !strstr(run.err, word))
-        fail_msg("expected %d and '%s', got %d: %s", code, word, run.code, run.err);
-    assert_int_equal(program_lines(run.err), 1);
-    program_free(&run);
-}
-
 /* ---- lines ------------------------------------------------------------------------------ */
 
 enum { LINES = 5, POINTS = 4 };

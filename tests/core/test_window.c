@@ -1,6 +1,7 @@
 /* Proves that a trail draws the segments that its window reaches, each once, and few others: the
    order of segments holds every one that has times, its groups tell their times, and the ranges of
-   a frame hold whatever the vertex stage would keep, whatever the times, the period and the day. */
+   a frame hold whatever the vertex stage would keep, whatever the times, the period and the day;
+   and that the parts of many lines are all of them, each line once. */
 #include "core_host.h"
 
 #include <math.h>
@@ -12,7 +13,7 @@
 
 #include <cmocka.h>
 
-enum { MOST_TEXELS = 70000, MOST_RANGES = 300 };
+enum { MOST_TEXELS = 70000, MOST_RANGES = 300, MOST_ROWS = 8, MOST_CHUNKS = 1024 };
 
 /* What went through the seam. */
 static struct {
@@ -20,6 +21,9 @@ static struct {
     uint32_t point_count, order_count; /* texels; 0: no such buffer */
     lao_range ranges[MOST_RANGES];
     uint32_t range_count, segment_count;
+    lao_range rows[MOST_ROWS][MOST_CHUNKS]; /* the first range of each row of a frame */
+    uint32_t counts[MOST_CHUNKS];           /* segments */
+    uint32_t row_count, chunk_count;
     lao_group groups[300];
     uint32_t group_count;
     int foreign; /* the rows do not read the order */
@@ -42,21 +46,29 @@ static lao_result keep_buffer(void *self, const lao_buffer_desc *desc, void **bu
 
 static void keep_ranges(const lao_execution *execution, lao_plan_step step) {
     const lao_chunk *chunks;
-    lao_range range = {0, 0, 0};
-    assert_int_equal(lao_step_draws(execution, &step, &chunks), 1);
+    seen.chunk_count = lao_step_draws(execution, &step, &chunks);
+    assert_in_range(seen.chunk_count, 1, MOST_CHUNKS);
+    assert_true(seen.row_count < MOST_ROWS);
     step.read_count = seen.foreign ? 2 : step.read_count;
-    seen.segment_count = chunks[0].count;
-    seen.group_count = chunks[0].group_count;
-    if (chunks[0].groups)
-        memcpy(seen.groups, chunks[0].groups, chunks[0].group_count * sizeof *seen.groups);
-    for (seen.range_count = 0; lao_step_range(execution, &step, &chunks[0], &range);) {
-        assert_true(seen.range_count < MOST_RANGES);
-        seen.ranges[seen.range_count++] = range;
+    for (uint32_t i = 0; i < seen.chunk_count; i++) {
+        lao_range range = {0, 0, 0};
+        seen.segment_count = chunks[i].count;
+        seen.group_count = chunks[i].group_count;
+        if (chunks[i].groups)
+            memcpy(seen.groups, chunks[i].groups, chunks[i].group_count * sizeof *seen.groups);
+        for (seen.range_count = 0; lao_step_range(execution, &step, &chunks[i], &range);) {
+            assert_true(seen.range_count < MOST_RANGES);
+            seen.ranges[seen.range_count++] = range;
+        }
+        assert_false(lao_step_range(execution, &step, &chunks[i], &range)); /* over stays over */
+        seen.counts[i] = chunks[i].count;
+        seen.rows[seen.row_count][i] = seen.range_count ? seen.ranges[0] : range;
     }
-    assert_false(lao_step_range(execution, &step, &chunks[0], &range)); /* over stays over */
+    seen.row_count++;
 }
 
 static lao_result keep_draws(void *self, void *view, const lao_execution *execution) {
+    seen.row_count = 0;
     for (uint32_t i = 0; i < execution->plan->step_count; i++) {
         if (LAO_PASS_DRAWS_LINES(execution->plan->steps[i].row->kind))
             keep_ranges(execution, execution->plan->steps[i]);
@@ -80,7 +92,7 @@ typedef struct fixture {
     lao_lines_desc desc;
 } fixture;
 
-static void begin(fixture *f, uint32_t line_count, uint32_t length) {
+static void begin_in(fixture *f, uint32_t line_count, uint32_t length, uint32_t most_texels) {
     const lao_view_desc size = {16, 16, 0};
     const uint32_t n = line_count * length;
     lao_desc desc;
@@ -88,6 +100,7 @@ static void begin(fixture *f, uint32_t line_count, uint32_t length) {
     memset(&seen, 0, sizeof seen);
     memset(&desc, 0, sizeof desc);
     core_window_clear();
+    core_seen.max_buffer_texels = most_texels;
     inner = core_backend(0);
     f->backend = inner;
     f->backend.buffer_create = keep_buffer;
@@ -115,6 +128,10 @@ static void begin(fixture *f, uint32_t line_count, uint32_t length) {
     f->frame.camera = core_camera();
     f->frame.sets = &f->set;
     f->frame.set_count = 1;
+}
+
+static void begin(fixture *f, uint32_t line_count, uint32_t length) {
+    begin_in(f, line_count, length, 0);
 }
 
 static void upload(fixture *f) {
@@ -329,25 +346,61 @@ static void any_times(void **state) {
     }
 }
 
-/* Many lines in a small picture are drawn in two parts: every fourth line, then the others. */
+/* Many lines in a small picture are drawn in parts: every eighth line, every eighth, every fourth
+   and every second. */
 static void parts_are_everything(void **state) {
+    static const struct {
+        uint32_t first, step, count; /* lines */
+    } parts[LAO_PARTS] = {{0, 8, 13}, {4, 8, 13}, {2, 4, 25}, {1, 2, 50}};
+    uint32_t line = 0;
     fixture f;
     (void)state;
     begin(&f, 101, 10);
     f.settings.trail = 0;
     upload(&f);
     draw(&f, 0);
-    assert_int_equal(seen.range_count, 1);           /* of the last row: the rest */
-    assert_int_equal(seen.ranges[0].first, 26 * 12); /* 26 lines between ghosts */
-    assert_int_equal(seen.ranges[0].first + seen.ranges[0].count, seen.segment_count);
-    for (uint32_t k = 0; k < 26; k++) /* x counts points */
-        assert_true(seen.points[4 * (12 * k + 1)] == 40.0f * (float)k);
+    assert_int_equal(seen.row_count, LAO_PARTS);
+    for (uint32_t i = 0; i < LAO_PARTS; i++) {
+        const uint32_t end = i + 1 < LAO_PARTS ? 12 * (line + parts[i].count) : seen.segment_count;
+        assert_int_equal(seen.rows[i][0].first, 12 * line); /* a line between its ghosts */
+        assert_int_equal(seen.rows[i][0].first + seen.rows[i][0].count, end);
+        for (uint32_t k = 0; k < parts[i].count; k++, line++) { /* x counts points */
+            uint32_t expected = 10 * (parts[i].first + parts[i].step * k);
+            assert_true(seen.points[4 * (12 * line + 1)] == (float)expected);
+        }
+    }
+    assert_int_equal(line, 101);
     f.settings.set = LAO_SET(cull_hidden);
     draw(&f, 0);
-    assert_int_equal(seen.range_count, 1);
+    assert_int_equal(seen.row_count, 1);
     assert_int_equal(seen.ranges[0].first, 0);
     assert_int_equal(seen.ranges[0].count, seen.segment_count);
     end(&f);
+}
+
+/* However short buffers are: the parts of each are all of it. */
+static void parts_of_chunks(void **state) {
+    uint32_t seed = 5;
+    (void)state;
+    for (int i = 0; i < 60; i++) {
+        fixture f;
+        begin_in(&f, 64 + core_random(&seed) % 40, 2 + core_random(&seed) % 9,
+                 4 + core_random(&seed) % 300);
+        f.settings.trail = 0;
+        upload(&f);
+        draw(&f, 0);
+        assert_int_equal(seen.row_count, LAO_PARTS);
+        for (uint32_t c = 0; c < seen.chunk_count; c++) {
+            uint32_t drawn = 0;
+            for (uint32_t row = 0; row < seen.row_count; row++) {
+                if (seen.rows[row][c].count > 0)
+                    assert_int_equal(seen.rows[row][c].first, drawn);
+                drawn += seen.rows[row][c].count;
+            }
+            assert_int_equal(drawn, seen.counts[c]);
+        }
+        end(&f);
+    }
 }
 
 /* A refused allocation refuses the set, and nothing leaks. */
@@ -374,7 +427,8 @@ int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(few_others_are_drawn),   cmocka_unit_test(windows_wrap),
         cmocka_unit_test(others_draw_everything), cmocka_unit_test(any_times),
-        cmocka_unit_test(parts_are_everything),   cmocka_unit_test(memory_runs_out),
+        cmocka_unit_test(parts_are_everything),   cmocka_unit_test(parts_of_chunks),
+        cmocka_unit_test(memory_runs_out),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -276,6 +276,10 @@ static void a_refused_shader_is_named_with_the_compilers_text(void **state) {
     assert_int_equal(backend.view_prepare(self, view, &frame.plan, shaders), LAO_ERROR_SHADER);
     assert_int_equal(core.logs, 1);
     assert_non_null(strstr(core.text, "t_over, fragment stage: 0:"));
+    shaders[1] = NULL; /* its module's file is not there */
+    assert_int_equal(backend.view_prepare(self, view, &frame.plan, shaders), LAO_ERROR_SHADER);
+    assert_int_equal(core.logs, 2);
+    assert_non_null(strstr(core.text, "must lie beside lineao_shaders.h"));
     backend.view_destroy(self, view);
     backend.detach(self);
     check_balance(&core);

@@ -335,6 +335,116 @@ static void gxl_radii(void **state) {
     io_tree_free(&tree);
 }
 
+/* ---- Forms ----------------------------------------------------------------------------------- */
+
+/* A vessel of three nodes with an ellipse and noise, in cm. */
+static const double form_points[3][4] = {{0, 0, 0, 2}, {1, 0, 0, 2}, {2, 1, 0, 1}};
+static const double form_ratio[3] = {1, 0.5, 0.75};
+static const double form_axis[9] = {0, 0, 1, 0, 1, 0, 0, 0.5, -0.5};
+static const double form_amplitude[3] = {0, 0.125, 0.25};
+
+static const double *form_values(const sdv_attribute *a) {
+    if (!strcmp(a->name, SDV_SECTION_AXIS) && a->components == 3)
+        return form_axis;
+    if (a->components != 1)
+        return NULL;
+    return !strcmp(a->name, SDV_SECTION_RATIO) ? form_ratio
+           : !strcmp(a->name, SDV_UNCERTAINTY) ? form_amplitude
+                                               : NULL;
+}
+
+/* The three attributes reach the field, lengths in mm. */
+static void assert_forms(buffer b) {
+    io_tree tree = read_tree(&b, NULL, "cm");
+    io_vessel vessel = build(&tree);
+    sdv_tree *t = &vessel.tree;
+    sdv_grid grid;
+    int found = 0;
+    assert_int_equal(t->node_count, 3);
+    for (uint32_t i = 0; i < t->node_attribute_count; i++) {
+        const sdv_attribute *a = &t->node_attributes[i];
+        const double *values = form_values(a);
+        double scale = values == form_amplitude ? 10 : 1;
+        for (uint32_t k = 0; values && k < 3 * a->components; k++)
+            assert_true(near((double)a->values[k], scale * values[k]));
+        found += values != NULL;
+    }
+    assert_int_equal(found, 3);
+    assert_int_equal(sdv_grid_build(NULL, t, NULL, &grid), LAO_OK);
+    assert_non_null(grid.forms);
+    sdv_grid_free(&grid);
+    io_vessel_free(&vessel);
+    io_tree_free(&tree);
+    buffer_free(&b);
+}
+
+static const char swc_form_rows[] = "1 0 0 0 0 1 -1 1 0 0 1 0\n"
+                                    "2 0 1 0 0 1 1 0.5 0 1 0 0.125\n"
+                                    "3 0 2 1 0 0.5 2 0.75 0 0.5 -0.5 0.25\n";
+#define SWC_NAMES "# id type x y z radius parent section_ratio " SWC_AXES " uncertainty\n"
+#define SWC_AXES "section_axis section_axis section_axis"
+
+static void forms_of_swc(void **state) {
+    buffer b = text_file("# a vessel\n" SWC_NAMES);
+    (void)state;
+    put_text(&b, swc_form_rows);
+    assert_forms(b);
+    /* other words are no names; a word that is no number is no value */
+    b = text_file("# section_ratio uncertainty\n");
+    put_text(&b, swc_form_rows);
+    io_tree tree = read_tree(&b, NULL, "mm");
+    assert_int_equal(tree.node_attribute_count, 1); /* the type */
+    assert_true(warns(&tree, "seventh"));
+    io_tree_free(&tree);
+    buffer_free(&b);
+    tree = tree_of_text("# a b c d e f g flow wall\n1 0 0 0 0 1 -1 7 x\n2 0 1 0 0 1 1 8\n");
+    assert_int_equal(tree.node_attribute_count, 3);
+    assert_string_equal(tree.node_attributes[1].name, "flow");
+    assert_true(tree.node_attributes[1].data[1] == 8);
+    assert_true(isnan(tree.node_attributes[2].data[0]) && isnan(tree.node_attributes[2].data[1]));
+    assert_false(warns(&tree, "seventh"));
+    io_tree_free(&tree);
+}
+
+static void forms_of_vtk(void **state) {
+    (void)state;
+    assert_forms(text_file(
+        "# vtk DataFile Version 3.0\nvessel\nASCII\nDATASET POLYDATA\nPOINTS 3 float\n"
+        "0 0 0 1 0 0 2 1 0\nLINES 1 4\n3 0 1 2\nPOINT_DATA 3\nSCALARS radius float 1\n"
+        "LOOKUP_TABLE default\n1 1 0.5\nVECTORS section_axis float\n0 0 1 0 1 0 0 0.5 -0.5\n"
+        "FIELD FieldData 2\nsection_ratio 1 3 float\n1 0.5 0.75\n"
+        "uncertainty 1 3 float\n0 0.125 0.25\n"));
+}
+
+static void forms_of_vtp(void **state) {
+#define ARRAY(type, name, parts, values)                                                           \
+    "<DataArray type=\"" type "\" Name=\"" name "\" NumberOfComponents=\"" parts                   \
+    "\" format=\"ascii\">" values "</DataArray>\n"
+    (void)state;
+    assert_forms(text_file(
+        "<?xml version=\"1.0\"?>\n<VTKFile type=\"PolyData\" version=\"0.1\" "
+        "byte_order=\"LittleEndian\"><PolyData><Piece NumberOfPoints=\"3\" NumberOfLines=\"1\" "
+        "NumberOfVerts=\"0\" NumberOfStrips=\"0\" NumberOfPolys=\"0\">\n<PointData>"  //
+        ARRAY("Float32", "radius", "1", "1 1 0.5")                                    //
+        ARRAY("Float32", "section_ratio", "1", "1 0.5 0.75")                          //
+        ARRAY("Float64", "section_axis", "3", "0 0 1 0 1 0 0 0.5 -0.5")               //
+        ARRAY("Float32", "uncertainty", "1", "0 0.125 0.25") "</PointData>\n<Points>" //
+        ARRAY("Float32", "Points", "3", "0 0 0 1 0 0 2 1 0") "</Points>\n<Lines>"     //
+        ARRAY("Int32", "connectivity", "1", "0 1 2")                                  //
+        ARRAY("Int32", "offsets", "1", "3") "</Lines></Piece></PolyData></VTKFile>\n"));
+}
+
+static void forms_of_h5(void **state) {
+    const h5_table more[] = {{"section_ratio", 1, form_ratio},
+                             {"section_axis", 3, form_axis},
+                             {"uncertainty", 1, form_amplitude}};
+    (void)state;
+    assert_forms(make_h5_section(form_points, 3, more, 3));
+    /* one of the wrong width is told with its name */
+    const h5_table narrow = {"section_axis", 2, form_axis};
+    refuse(make_h5_section(form_points, 3, &narrow, 1), NULL, "section_axis");
+}
+
 /* ---- vmv ------------------------------------------------------------------------------------- */
 
 static void vmv_defects(void **state) {
@@ -544,6 +654,10 @@ int main(void) {
         cmocka_unit_test(gxl_radii),
         cmocka_unit_test(vmv_defects),
         cmocka_unit_test(vmv_strands),
+        cmocka_unit_test(forms_of_swc),
+        cmocka_unit_test(forms_of_vtk),
+        cmocka_unit_test(forms_of_vtp),
+        cmocka_unit_test(forms_of_h5),
         cmocka_unit_test(h5_loops_are_kept),
         cmocka_unit_test(h5_triangle_is_a_loop),
         cmocka_unit_test(h5_defects),

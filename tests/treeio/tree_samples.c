@@ -115,15 +115,15 @@ static void put_table(hid_t file, const char *name, int rank, size_t rows, size_
     H5Sclose(space);
 }
 
-buffer make_h5(const double (*points)[4], size_t point_count, const double *structure,
-               size_t section_count, size_t width, const double (*links)[2], size_t link_count) {
-    hid_t access = H5Pcreate(H5P_FILE_ACCESS);
-    if (H5Pset_fapl_core(access, 1024, 0) < 0)
+/* A file in memory; take_image closes it. */
+static hid_t new_file(hid_t *access) {
+    *access = H5Pcreate(H5P_FILE_ACCESS);
+    if (H5Pset_fapl_core(*access, 1024, 0) < 0)
         abort();
-    hid_t file = H5Fcreate("sample", H5F_ACC_TRUNC, H5P_DEFAULT, access);
-    put_table(file, "points", 2, point_count, 4, H5T_IEEE_F64LE, points ? points[0] : NULL);
-    put_table(file, "structure", width > 1 ? 2 : 1, section_count, width, H5T_STD_U64BE, structure);
-    put_table(file, "connectivity", 2, link_count, 2, H5T_STD_I64LE, links ? links[0] : NULL);
+    return H5Fcreate("sample", H5F_ACC_TRUNC, H5P_DEFAULT, *access);
+}
+
+static buffer take_image(hid_t file, hid_t access) {
     H5Fflush(file, H5F_SCOPE_LOCAL);
     ssize_t size = H5Fget_file_image(file, NULL, 0);
     uint8_t *image = size > 0 ? malloc((size_t)size) : NULL;
@@ -135,6 +135,28 @@ buffer make_h5(const double (*points)[4], size_t point_count, const double *stru
     H5Fclose(file);
     H5Pclose(access);
     return b;
+}
+
+buffer make_h5(const double (*points)[4], size_t point_count, const double *structure,
+               size_t section_count, size_t width, const double (*links)[2], size_t link_count) {
+    hid_t access, file = new_file(&access);
+    put_table(file, "points", 2, point_count, 4, H5T_IEEE_F64LE, points ? points[0] : NULL);
+    put_table(file, "structure", width > 1 ? 2 : 1, section_count, width, H5T_STD_U64BE, structure);
+    put_table(file, "connectivity", 2, link_count, 2, H5T_STD_I64LE, links ? links[0] : NULL);
+    return take_image(file, access);
+}
+
+buffer make_h5_section(const double (*points)[4], size_t point_count, const h5_table *more,
+                       size_t more_count) {
+    const double first = 0;
+    hid_t access, file = new_file(&access);
+    put_table(file, "points", 2, point_count, 4, H5T_IEEE_F64LE, points[0]);
+    put_table(file, "structure", 1, 1, 1, H5T_STD_U64BE, &first);
+    put_table(file, "connectivity", 2, 0, 2, H5T_STD_I64LE, NULL);
+    for (size_t i = 0; i < more_count; i++)
+        put_table(file, more[i].name, more[i].columns > 1 ? 2 : 1, point_count, more[i].columns,
+                  H5T_IEEE_F32LE, more[i].values);
+    return take_image(file, access);
 }
 
 static void point_of(size_t node, double out[4]) {

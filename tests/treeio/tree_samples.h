@@ -48,5 +48,13 @@ buffer make_mesh_sample(const char *name);
 /* An HDF5 section graph from tables of doubles; structure with `width` columns. */
 buffer make_h5(const double (*points)[4], size_t point_count, const double *structure,
                size_t section_count, size_t width, const double (*links)[2], size_t link_count);
+/* One section, with further tables of a row per point. */
+typedef struct h5_table {
+    const char *name;
+    size_t columns;
+    const double *values;
+} h5_table;
+buffer make_h5_section(const double (*points)[4], size_t point_count, const h5_table *more,
+                       size_t more_count);
 
 #endif

@@ -503,18 +503,18 @@ static lao_v2 phase_of(lao_v4 t) {
 }
 
 static float paper(const screen *s, int style, lao_v2 phase, float dark, float shadow, float mark,
-                   float wide_u, float wide_v) {
+                   float wide_u, float wide_v, float finer) {
     float inked = 0, pattern = 0, left;
     int n = s->pattern ? (int)s->pattern[0] : 0;
     for (int i = 0; n > 0 && i < SDV_PATTERN_SAMPLES * SDV_PATTERN_SAMPLES; i++)
         inked += dark > s->pattern[1 + sdv_pattern_at(phase, wide_u, wide_v, i, n)] ? 1.0f : 0.0f;
     if (n > 0)
         pattern = sdv_pattern_ink(inked, dark, wide_u, wide_v);
-    left = sdv_style_paper(style, phase, dark, shadow, wide_u, wide_v, pattern);
+    left = sdv_style_paper(style, phase, dark, shadow, wide_u, wide_v, finer, pattern);
     if (mark > 0)
         left = left *
                (1.0f - sdv_style_ink(SDV_STYLE_STIPPLE + (int)s->values[SDV_SETTING_ID_mark_style],
-                                     phase.x, phase.y, mark, wide_u, wide_v));
+                                     phase.x, phase.y, mark, wide_u, wide_v, finer));
     return left;
 }
 
@@ -525,6 +525,14 @@ static bool marked(const screen *s, lao_v4 hit) {
     return sdv_is_marked(xyz(hit), s->cones[at], s->cones[at + 1],
                          (float)s->colors[4 * at + 3] / 255.0f,
                          (float)s->colors[4 * at + 7] / 255.0f);
+}
+
+static float fineness(const screen *s, lao_v4 hit) {
+    size_t at = 2 * (size_t)(hit.w < 0 ? 0 : hit.w);
+    if (!s->cones || hit.w < 0)
+        return 1;
+    return sdv_ink_finer(sdv_cone_radius(xyz(hit), s->cones[at], s->cones[at + 1]), s->period,
+                         pixel_mm(s, xyz(hit)));
 }
 
 static lao_v4 ink(const screen *s, uint32_t k, lao_v4 hit, lao_v4 normal, const lao_v4 *ray) {
@@ -541,6 +549,7 @@ static lao_v4 ink(const screen *s, uint32_t k, lao_v4 hit, lao_v4 normal, const 
     float wide_u = footprint(s, z, n, p, direction);
     float wide_v = footprint(s, lao_v3_cross(n, z), n, p, direction);
     float mark = marked(s, hit) ? v[SDV_SETTING_ID_mark_darkness] : 0.0f;
+    float finer = fineness(s, hit);
     lao_v4 before = s->recalled[0][k];
     if (!sdv_is_covered(hit.w)) {
         float reach = v[SDV_SETTING_ID_near_miss] > 1.5f
@@ -557,9 +566,9 @@ static lao_v4 ink(const screen *s, uint32_t k, lao_v4 hit, lao_v4 normal, const 
                                   0.01f * v[SDV_SETTING_ID_shadow_width] * s->frame.depth.z,
                                   v[SDV_SETTING_ID_shadow_softness]);
     }
-    now = paper(s, style, phase_of(s->uv[k]), 1 - tone, shadow, mark, wide_u, wide_v);
+    now = paper(s, style, phase_of(s->uv[k]), 1 - tone, shadow, mark, wide_u, wide_v, finer);
     if (before.w > 0) {
-        shown = paper(s, style, phase_of(before), 1 - tone, shadow, mark, wide_u, wide_v);
+        shown = paper(s, style, phase_of(before), 1 - tone, shadow, mark, wide_u, wide_v, finer);
         shown = shown + before.z;
         rest = sdv_ink_rest(shown, now, v[SDV_SETTING_ID_ink_step]);
     }

@@ -372,6 +372,10 @@ static void light_and_openness(void **state) {
     assert_true(open > 0.99f && below < 0.9f && below > 0.1f);
     assert_true(sdv_openness(&g, NULL, v3(0, 0, 0), up, 4, 0) == 0.0f); /* inside */
     assert_true(sdv_openness(&g, NULL, v3(0, 0, 5), up, 0, 0) == 1.0f);
+    /* in a straight vessel no wall is dark, however far one looks; what looks along it is */
+    assert_true(sdv_openness(&g, NULL, v3(15, 0, -5), up, 4, 1) > 0.999f);
+    assert_true(sdv_openness(&g, NULL, v3(15, 0, -5), up, 40, 1) > 0.999f);
+    assert_true(sdv_openness(&g, NULL, v3(15, 0, 5), v3(1, 0, 0), 40, 1) < 0.2f);
     sdv_grid_free(&g);
     sdv_tree_free(&t);
 }

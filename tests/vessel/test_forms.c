@@ -1,7 +1,8 @@
 /* Elliptic and noisy vessels: cross sections have the radii that were asked for, the noise moves
    the surface by no more than its amplitude and has the slope that is said, the bound is
-   1-Lipschitz with the true normal as its gradient, rays stop where a walk in small steps does,
-   ratio 1 and amplitude 0 change nothing, and a grid whose nodes moved is one built anew. */
+   1-Lipschitz with the true normal as its gradient, cones meet without a step, rays stop where a
+   walk in small steps does, ratio 1 and amplitude 0 change nothing, and a grid whose nodes moved is
+   one built anew. */
 #include "vessel_host.h"
 
 #include <math.h>
@@ -70,10 +71,16 @@ static void done(scene *s) {
     sdv_tree_free(&s->tree);
 }
 
-/* The level of cone i, divided by how fast it may rise. */
+static sdv_form form_of(const sdv_grid *g, uint32_t i) {
+    const lao_v4 *f = g->forms + 3 * (size_t)i;
+    return (sdv_form){f[0], f[1], f[2]};
+}
+/* The level of cone i, where it is known how fast it may rise, divided by that. */
 static double level(const sdv_grid *g, uint32_t i, lao_v3 p) {
-    const lao_v4 *c = g->cones + 2 * (size_t)i, *f = g->forms + 2 * (size_t)i;
-    return (double)(sdv_form_level(p, c[0], c[1], f[0], f[1]).w / f[1].z);
+    const lao_v4 *c = g->cones + 2 * (size_t)i;
+    sdv_form f = form_of(g, i);
+    return (double)(lao_min(sdv_form_level(p, c[0], c[1], f).w, sdv_form_most(c[0], c[1], f)) /
+                    f.bump.z);
 }
 static double least_level(const sdv_grid *g, lao_v3 p) {
     double least = 1e30;
@@ -177,14 +184,16 @@ static void lipschitz(void **state) {
     make_random(&s, 5, 0);
     for (i = 0; i < 200000; i++) {
         uint32_t k = i % s.grid.cone_count;
-        const lao_v4 *c = s.grid.cones + 2 * (size_t)k, *f = s.grid.forms + 2 * (size_t)k;
+        const lao_v4 *c = s.grid.cones + 2 * (size_t)k;
+        sdv_form f = form_of(&s.grid, k);
         float reach = i % 3 ? 2.0f : 20.0f;
         lao_v3 p = lao_v3_add(lao_v3_make(c[0].x, c[0].y, c[0].z), somewhere(&seed, reach));
         lao_v3 d = somewhere(&seed, i % 2 ? 0.02f : 3.0f), q = lao_v3_add(p, d);
-        lao_v4 there = sdv_form_level(p, c[0], c[1], f[0], f[1]);
-        float round = sdv_round_cone(p, c[0], c[1]), bound = sdv_form_bound(round, there, f[1]);
-        float other = sdv_form_bound(sdv_round_cone(q, c[0], c[1]),
-                                     sdv_form_level(q, c[0], c[1], f[0], f[1]), f[1]);
+        lao_v4 there = sdv_form_level(p, c[0], c[1], f), elsewhere;
+        float round = sdv_round_cone(p, c[0], c[1]);
+        float bound = sdv_form_bound(round, there, c[0], c[1], f), other;
+        elsewhere = sdv_form_level(q, c[0], c[1], f);
+        other = sdv_form_bound(sdv_round_cone(q, c[0], c[1]), elsewhere, c[0], c[1], f);
         assert_true(fabsf(bound - other) <= lao_sqrt(lao_v3_dot(d, d)) + 2e-5f);
         assert_true(bound >= round); /* lies inside the round cone */
         assert_true((bound < 0) == (there.w < 0) || fabsf(there.w) < 1e-5f);
@@ -204,13 +213,15 @@ static void gradients(void **state) {
     for (i = 0; i < 40000; i++) {
         const float h = 4e-3f;
         uint32_t k = i % s.grid.cone_count;
-        const lao_v4 *c = s.grid.cones + 2 * (size_t)k, *f = s.grid.forms + 2 * (size_t)k;
+        const lao_v4 *c = s.grid.cones + 2 * (size_t)k;
+        sdv_form f = form_of(&s.grid, k);
+        float ratio = 1 / (1 + lao_max(f.a.w, f.b.w)); /* levels are of stretched space */
         lao_v3 p = lao_v3_add(lao_v3_make(c[0].x, c[0].y, c[0].z), somewhere(&seed, 2));
         lao_v3 d = lao_v3_unit(somewhere(&seed, 1), lao_v3_make(1, 0, 0));
-        lao_v4 at = sdv_form_level(p, c[0], c[1], f[0], f[1]);
-        float up = sdv_form_level(lao_v3_along(p, d, h), c[0], c[1], f[0], f[1]).w - at.w;
-        float down = at.w - sdv_form_level(lao_v3_along(p, d, -h), c[0], c[1], f[0], f[1]).w;
-        float slope = lao_v3_dot(lao_v3_make(at.x, at.y, at.z), d);
+        lao_v4 at = sdv_form_level(p, c[0], c[1], f);
+        float up = ratio * (sdv_form_level(lao_v3_along(p, d, h), c[0], c[1], f).w - at.w);
+        float down = ratio * (at.w - sdv_form_level(lao_v3_along(p, d, -h), c[0], c[1], f).w);
+        float slope = ratio * lao_v3_dot(lao_v3_make(at.x, at.y, at.z), d);
         if (fabsf(up - down) < 0.02f * h) {
             assert_true(fabsf(0.5f * (up + down) / h - slope) < 0.012f);
             checked++;
@@ -244,8 +255,7 @@ static void rays(void **state) {
         }
         if (hit.cone != SDV_NONE) {
             const lao_v4 *c = s.grid.cones + 2 * (size_t)hit.cone;
-            const lao_v4 *f = s.grid.forms + 2 * (size_t)hit.cone;
-            lao_v4 n = sdv_form_estimate(hit.position, c[0], c[1], f[0], f[1]);
+            lao_v4 n = sdv_form_estimate(hit.position, c[0], c[1], form_of(&s.grid, hit.cone));
             assert_true(fabsf(n.w) < 4e-3f * s.grid.cell);
             assert_true(level(&s.grid, hit.cone, hit.position) <=
                         least_level(&s.grid, hit.position) + 1e-6);
@@ -254,6 +264,76 @@ static void rays(void **state) {
         }
     }
     assert_true(hits > 50 && hits < 240);
+    done(&s);
+}
+
+/* The ellipsoid that stands at a node: its shorter axis at a right angle to the mean of the two
+ * cones that meet there. A direction of unit length to its surface, from the middle. */
+static lao_v3 on_ellipsoid(const scene *s, uint32_t node, lao_v3 u, lao_v3 *minor) {
+    const lao_v4 *n = s->tree.nodes + node;
+    double along[3] = {0, 0, 0}, m[3], d[2][3], by = 0, size = 0, length[2] = {0, 0};
+    int i, k;
+    for (i = 0; i < 2; i++) {
+        d[i][0] = (double)n[i].x - (double)n[i - 1].x;
+        d[i][1] = (double)n[i].y - (double)n[i - 1].y;
+        d[i][2] = (double)n[i].z - (double)n[i - 1].z;
+        for (k = 0; k < 3; k++)
+            length[i] += d[i][k] * d[i][k];
+    }
+    for (k = 0; k < 3; k++) {
+        along[k] = d[0][k] / sqrt(length[0]) + d[1][k] / sqrt(length[1]);
+        by += along[k] * (double)s->axis[3 * node + (uint32_t)k];
+        size += along[k] * along[k];
+    }
+    for (k = 0; k < 3; k++)
+        m[k] = (double)s->axis[3 * node + (uint32_t)k] - by / size * along[k];
+    *minor = lao_v3_unit(lao_v3_make((float)m[0], (float)m[1], (float)m[2]), u);
+    return lao_v3_along(u, *minor, (s->ratio[node] - 1) * lao_v3_dot(u, *minor));
+}
+
+/* A bent vessel whose section flattens and turns from node to node: where two cones meet, both have
+ * the ellipsoid of the node as their end, so that there is no step between them. */
+static void joints(void **state) {
+    float positions[3 * NODES], radii[NODES];
+    sdv_segment segments[NODES];
+    uint32_t seed = 21, i, k, ends = 0;
+    scene s;
+    (void)state;
+    for (i = 0; i < NODES; i++) {
+        positions[3 * i] = 2.5f * (float)i;
+        positions[3 * i + 1] = 3 * lao_cos_turns((float)i / 12);
+        positions[3 * i + 2] = 3 * lao_sin_turns((float)i / 9);
+        radii[i] = 1.5f;
+        segments[i] = (sdv_segment){i, i + 1};
+    }
+    make(&s, NODES, positions, radii, segments, 0, 3);
+    memset(s.amplitude, 0, sizeof s.amplitude);
+    s.tree.node_attributes = s.attributes;
+    sdv_grid_free(&s.grid);
+    assert_int_equal(sdv_grid_build(NULL, &s.tree, NULL, &s.grid), LAO_OK);
+    for (i = 0; i < 20000; i++) {
+        uint32_t node = 1 + i % (NODES - 2);
+        lao_v3 u = lao_v3_unit(somewhere(&seed, 1), lao_v3_make(1, 0, 0)), m;
+        lao_v3 off = lao_v3_scale(on_ellipsoid(&s, node, u, &m), 1.5f);
+        const float *at = positions + 3 * (size_t)node;
+        for (k = 0; k < 2;
+             k++) { /* the cone that comes, seen from its end, and the one that goes */
+            const lao_v4 *c = s.grid.cones + 2 * (size_t)(node - 1 + k);
+            lao_v3 axis = lao_v3_sub(sdv_xyz(c[1 - k]), sdv_xyz(c[k])), stretched;
+            sdv_form f = form_of(&s.grid, node - 1 + k);
+            if (lao_v3_dot(off, axis) < 0)
+                continue; /* not behind the end */
+            float d =
+                sdv_form_level(lao_v3_add(lao_v3_make(at[0], at[1], at[2]), off), c[0], c[1], f).w;
+            stretched = lao_v3_along(axis, m, (1 / s.ratio[node] - 1) * lao_v3_dot(axis, m));
+            assert_true(d < 2e-5f);
+            if (lao_v3_dot(u, stretched) > 0) {
+                assert_true(d > -2e-5f);
+                ends++;
+            }
+        }
+    }
+    assert_true(ends > 10000);
     done(&s);
 }
 
@@ -291,7 +371,7 @@ static void moved(void **state) {
     box.cell = s.grid.cell;
     memcpy(box.size, s.grid.size, sizeof box.size);
     assert_int_equal(sdv_grid_build(NULL, &s.tree, &box, &fresh), LAO_OK);
-    assert_memory_equal(fresh.cones, s.grid.cones, 4 * fresh.cone_count * sizeof *fresh.cones);
+    assert_memory_equal(fresh.cones, s.grid.cones, 5 * fresh.cone_count * sizeof *fresh.cones);
     assert_memory_equal(fresh.cells, s.grid.cells, fresh.cell_count * sizeof *fresh.cells);
     sdv_grid_free(&fresh);
     done(&s);
@@ -299,9 +379,9 @@ static void moved(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(noise),       cmocka_unit_test(sections),  cmocka_unit_test(amplitudes),
-        cmocka_unit_test(lipschitz),   cmocka_unit_test(gradients), cmocka_unit_test(rays),
-        cmocka_unit_test(round_forms), cmocka_unit_test(moved),
+        cmocka_unit_test(noise),     cmocka_unit_test(sections),    cmocka_unit_test(amplitudes),
+        cmocka_unit_test(lipschitz), cmocka_unit_test(gradients),   cmocka_unit_test(rays),
+        cmocka_unit_test(joints),    cmocka_unit_test(round_forms), cmocka_unit_test(moved),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -178,9 +178,10 @@ static bool shade_of(const subject *tree, const solid *of, const float *v,
                                             0.01f * v[SDV_SETTING_ID_shadow_width] * diameter,
                                             v[SDV_SETTING_ID_shadow_softness]),
                            v[SDV_SETTING_ID_shadow_strength]);
+    lao_v2 parts = sdv_light_parts(v[SDV_SETTING_ID_surface_ambient],
+                                   v[SDV_SETTING_ID_surface_diffuse], inside);
     *out = sdv_shade(color_at(tree, of, hit, r), normal, lao_v3_scale(ray->direction, -1.0f),
-                     v[SDV_SETTING_ID_surface_ambient], v[SDV_SETTING_ID_surface_diffuse],
-                     v[SDV_SETTING_ID_surface_specular],
+                     parts.x, parts.y, v[SDV_SETTING_ID_surface_specular],
                      (lao_int)v[SDV_SETTING_ID_surface_shininess], light);
     return true;
 }

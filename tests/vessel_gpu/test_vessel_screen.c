@@ -256,6 +256,7 @@ static void frames_of(int converge) {
         render_perspective(&cameras[i], 40, (double)WIDTH / HEIGHT, 1, 200);
     }
     s.vessel.ssp_converge = (float)converge;
+    s.vessel.ssp_period = 6; /* wider than vessels, whose ink is finer */
     s.vessel.style = SDV_STYLE_LAYERED;
     s.vessel.void_style = SDV_VOID_HATCH;
     screen_of(&s, &tree, &c);

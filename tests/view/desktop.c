@@ -156,27 +156,29 @@ const char *viewer_hears(desktop *d, const char *begin) {
     return rest;
 }
 
-void viewer_rests(desktop *d, double seconds) {
-    double end = now() + PATIENCE, quiet = now();
-    while (now() < end && now() - quiet < seconds) {
-        size_t before = d->length;
-        if (!take(d, seconds / 4))
+void viewer_rests(desktop *d) {
+    static const char rest[] = "\nrest\n";
+    double end = now() + PATIENCE;
+    size_t length = sizeof rest - 1;
+    while (d->length < length || strcmp(d->text + d->length - length, rest) != 0) {
+        if (!take(d, 0.5))
             return;
-        if (d->length != before)
-            quiet = now();
+        if (now() > end)
+            fail_msg("the viewer never rests; it said:\n%s",
+                     d->text + (d->length > 800 ? d->length - 800 : 0));
     }
     d->read = d->length;
 }
 
-bool viewer_said(desktop *d, const char *begin) {
+uint32_t viewer_said(desktop *d, const char *begin) {
     size_t length = strlen(begin);
+    uint32_t count = 0;
     for (const char *at = d->text; at && *at; at = strchr(at, '\n') + 1) {
-        if (strncmp(at, begin, length) == 0)
-            return true;
+        count += strncmp(at, begin, length) == 0;
         if (!strchr(at, '\n'))
-            return false;
+            break;
     }
-    return false;
+    return count;
 }
 
 double viewer_memory(desktop *d) {
@@ -218,6 +220,8 @@ void viewer_start(desktop *d, const char *program, const char *const *arguments)
     while (*arguments && count < 47)
         words[count++] = *arguments++;
     assert_int_equal(pipe(ends), 0);
+    XTestFakeMotionEvent(d->display, 0, 1599, 999, CurrentTime); /* so that every place is new */
+    XSync(d->display, False);
     d->viewer = fork();
     if (d->viewer == 0) {
         close(ends[0]);

@@ -25,10 +25,10 @@ void viewer_kill(desktop *d);
 /* The rest of the next line that begins with `begin`; fails the test after two minutes. Valid until
  * the next call. */
 const char *viewer_hears(desktop *d, const char *begin);
-/* Waits until nothing has been said for that long. */
-void viewer_rests(desktop *d, double seconds);
-/* Has a line beginning so been said since the start? */
-bool viewer_said(desktop *d, const char *begin);
+/* Waits until the viewer has nothing left to do. */
+void viewer_rests(desktop *d);
+/* How many lines beginning so have been said since the start? */
+uint32_t viewer_said(desktop *d, const char *begin);
 
 /* What the viewer has in memory now, MB. */
 double viewer_memory(desktop *d);

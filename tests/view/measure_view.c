@@ -78,13 +78,13 @@ static void answers_within_two_frames(void **state) {
     print_message("%s, %s pathlines: playing %.2f frames per second; the last was %s\n", m->backend,
                   m->lines, frames / (now() - begin), size);
     user_types(d, "space");
-    viewer_rests(d, 2);
+    viewer_rests(d);
     for (int i = 0; i < STEPS; i++) {
         begin = now();
         user_types(d, "Right");
         snprintf(size, sizeof size, "%s", viewer_hears(d, "frame "));
         longest = now() - begin > longest ? now() - begin : longest;
-        viewer_rests(d, 0.5);
+        viewer_rests(d);
     }
     print_message("%s: at rest %.2f frames per second; the last was %s\n", m->backend, 1 / longest,
                   size);
@@ -92,7 +92,7 @@ static void answers_within_two_frames(void **state) {
     user_presses(d, 1, true);
     user_points(d, 420, 400);
     for (int i = 0; i < MOVES; i++) {
-        viewer_rests(d, 0.5);
+        viewer_rests(d);
         user_points(d, 420 + 10 * (i + 1), 400 + 5 * i);
         int ticks = frames_to_picture(d);
         worst = ticks > worst ? ticks : worst;
