@@ -79,12 +79,13 @@ static void draw_timeline(view *v, double first, double length) {
     ui_area a = ui_canvas("timeline", width, 1.6f * ui_text_height());
     float middle = a.y + 0.35f * a.height, line = ui_scale();
     double part = ((double)v->shot.time - first) / length;
+    int decimals = length >= 40 ? 0 : length >= 4 ? 1 : 3; /* so that places differ */
     ui_draw_box(false, a.x, middle - 2 * line, a.x + a.width, middle + 2 * line, 0xff606468);
     ui_draw_box(false, a.x, middle - 2 * line, a.x + (float)part * a.width, middle + 2 * line,
                 0xffe09a4a);
     ui_draw_disc(false, a.x + (float)part * a.width, middle, 6 * line, 0xfff0f0f0);
     for (int i = 0; i <= 4; i++) {
-        snprintf(text, sizeof text, i == 4 ? "%.4g ms" : "%.4g", first + i * length / 4);
+        snprintf(text, sizeof text, i == 4 ? "%.*f ms" : "%.*f", decimals, first + i * length / 4);
         float at = a.x + (float)i * 0.25f * a.width, wide = ui_text_width(text);
         ui_draw_text(false,
                      i == 4 ? at - wide

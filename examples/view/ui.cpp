@@ -110,7 +110,7 @@ ImU32 color_of(uint32_t color) {
 }
 
 ImDrawList *list_of(bool over) {
-    return over ? ImGui::GetForegroundDrawList() : ImGui::GetWindowDrawList();
+    return over ? ImGui::GetBackgroundDrawList() : ImGui::GetWindowDrawList();
 }
 
 } // namespace

@@ -108,7 +108,7 @@ typedef struct ui_area {
     bool clicked;          /* it has been let go where it was pressed */
 } ui_area;
 ui_area ui_canvas(const char *label, float width, float height);
-/* Colours: 0xAABBGGRR. Over the whole window with `over`, else in the panel. */
+/* Colours: 0xAABBGGRR. Over the picture and behind all panels with `over`, else in the panel. */
 void ui_draw_line(bool over, float ax, float ay, float bx, float by, uint32_t color, float width);
 void ui_draw_box(bool over, float ax, float ay, float bx, float by, uint32_t color);
 void ui_draw_disc(bool over, float x, float y, float radius, uint32_t color);

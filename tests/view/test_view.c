@@ -23,6 +23,9 @@
 enum { WIDTH = 410, HEIGHT = 300, PANEL = 165, PICTURE_HEIGHT = HEIGHT - 15 };
 enum { MIDDLE = PANEL + (WIDTH - PANEL) / 2 };
 
+/* Where occlusion is not what is tested: half the shaders need not be built. */
+#define NO_OCCLUSION "--set", "occlusion=off"
+
 static const char *viewer, *program; /* paths */
 static char programs[4096];          /* where others are looked for */
 
@@ -494,8 +497,9 @@ static void long_places_on_trees(void **state) {
 
 /* ---- videos -------------------------------------------------------------------------------- */
 
-static const char *const film_words[] = {"render", "--scene", "flow", "--lines",  "60", "--width",
-                                         "1",      "--ssaa",  "1",    "--frames", "3",  NULL};
+static const char *const film_words[] = {"render",  "--scene",    "flow",   "--lines", "60",
+                                         "--width", "1",          "--ssaa", "1",       "--frames",
+                                         "3",       NO_OCCLUSION, NULL};
 
 /* In place of ffmpeg, which is looked for in the folder of the test alone. */
 static void make_ffmpeg(const char *last_line) {
@@ -684,6 +688,8 @@ static void mixes(void **state) {
  * that one, beside it the other, into the void nothing. */
 static void picks_and_opens(void **state) {
     static const char *const words[] = {
+        "render",
+        NO_OCCLUSION,
         "cross.obj",
         "--width",
         "4",
@@ -838,8 +844,8 @@ static void shows_lines(void **state) {
 /* On a monitor of twice the pixels per inch everything is twice as large, unless told. */
 static void follows_the_monitor(void **state) {
     fixture *f = *state;
-    const char *words[] = {"--backend", f->backend, "--window", "1500x500", "render",
-                           "--scene",   "crossing", "--lines",  "50",       NULL};
+    const char *words[] = {"--backend", f->backend, "--window", "1500x500",   "render", "--scene",
+                           "crossing",  "--lines",  "50",       NO_OCCLUSION, NULL};
     int heights[2];
     for (int i = 0; i < 2; i++) {
         int place[4];
