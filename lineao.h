@@ -600,7 +600,7 @@ typedef struct lao_view {
     uint32_t id;
 } lao_view; /* 0: none */
 
-#define LAO_BACKEND_ABI 3u
+#define LAO_BACKEND_ABI 4u
 #define LAO_SPARE_PROGRAMS 32u /* kept unused, so that a plan that comes back compiles nothing */
 struct lao_backend; /* the seam, below; the host only carries it from lao_*_backend to lao_create */
 
