@@ -145,13 +145,25 @@ static void status_line(const char *const *parts, int count, float width) {
     ui_text(text);
 }
 
+/* What goes on beside the window; "" for nothing. */
+static void tell_work(const view *v, char text[MESSAGE_SIZE + 32]) {
+    char doing[MESSAGE_SIZE];
+    float part;
+    bool busy = loader_busy(v->loader, doing, &part);
+    snprintf(text, MESSAGE_SIZE + 32, "%s", v->next ? "building shaders ..." : "");
+    if (busy)
+        snprintf(text, MESSAGE_SIZE + 32, "%s %.0f %% (Esc: cancel)", doing, 100 * (double)part);
+}
+
 static void status(const view *v, window_rect place) {
-    char size[32] = "", samples[64] = "", time[64] = "", frame[32] = "";
-    const char *parts[] = {v->next ? "building shaders ..." : "nothing is open", size, time,
-                           samples, frame};
+    char work[MESSAGE_SIZE + 32], size[32] = "", samples[64] = "", time[64] = "", frame[32] = "";
+    const char *parts[] = {work, "", size, time, samples, frame};
     float width;
+    tell_work(v, work);
+    if (!v->open && !*work)
+        parts[1] = "nothing is open";
     if (v->open && !v->next) {
-        parts[0] = v->compare ? "two pictures" : v->window.backend->title;
+        parts[1] = v->compare ? "two pictures" : v->window.backend->title;
         snprintf(size, sizeof size, "%d x %d px", v->picture.width, v->picture.height);
         tell_samples(v, samples);
     }
