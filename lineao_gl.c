@@ -884,7 +884,7 @@ static lao_result lao__gl_program_get(lao__gl *gl, const lao_shader *shader,
         *link = program->next;
     else
         result = lao__gl_program_make(gl, shader, constants, &program);
-    if (result)
+    if (!program)
         return result;
     program->next = gl->programs;
     gl->programs = program;

@@ -279,7 +279,8 @@ static bool measure_backend(const char *backend, const subject *s, bool quick, c
 static uint32_t draw_ring(uint32_t size, float *values, float *weights, float *truth) {
     uint32_t covered = 0;
     for (uint32_t i = 0; i < size * size; i++) {
-        double x = 2.0 * (i % size) / size - 1, y = 2.0 * (double)(i / size) / size - 1;
+        uint32_t row = i / size;
+        double x = 2.0 * (i % size) / size - 1, y = 2.0 * row / size - 1;
         double r = hypot(x, y), a = atan2(y, x);
         bool on = fabs(r - 0.5 - 0.1 * sin(5 * a)) < 0.03 || (fabs(sin(4 * a)) < 0.04 && r > 0.4);
         truth[i] = (float)(100 + 40 * x + 20 * sin(3 * a));
@@ -303,9 +304,11 @@ static void fill_by_distance(uint32_t size, float *values, const float *weights,
             contour[count++] = i;
     }
     for (uint32_t i = 0; i < size * size; i++) {
-        float sum = 0, total = 0, x = (float)(i % size), y = (float)(i / size);
+        uint32_t row = i / size;
+        float sum = 0, total = 0, x = (float)(i % size), y = (float)row;
         for (uint32_t k = 0; weights[i] <= 0 && k < count; k++) {
-            float dx = x - (float)(contour[k] % size), dy = y - (float)(contour[k] / size);
+            uint32_t from = contour[k] / size;
+            float dx = x - (float)(contour[k] % size), dy = y - (float)from;
             float d2 = dx * dx + dy * dy, w = 1 / (d2 * d2);
             sum += w * values[contour[k]];
             total += w;
@@ -345,11 +348,13 @@ static bool measure_fill(uint32_t size, const char *folder, cJSON *list) {
     size_t pixels = (size_t)size * size;
     float *memory = calloc(5 * pixels, sizeof *memory);
     uint32_t *contour = calloc(pixels, sizeof *contour);
-    bool ok = (memory && contour) || bench_fail("no memory");
+    bool ok = memory && contour;
     double seconds[2] = {INFINITY, INFINITY}, apart = 0;
     float *pushed = memory, *weights = memory + pixels, *near = memory + 2 * pixels;
     float *truth = memory + 3 * pixels, *mask = memory + 4 * pixels;
     uint32_t covered = 0;
+    if (!ok)
+        bench_fail("no memory");
     for (int round = 0; ok && round < 3; round++) {
         sdv_pull_push_desc desc;
         memset(&desc, 0, sizeof desc);
@@ -359,7 +364,7 @@ static bool measure_fill(uint32_t size, const char *folder, cJSON *list) {
         desc.weights = weights;
         desc.push = SDV_PUSH_SPLINE;
         desc.exponent = 25;
-        double start = bench_now();
+        double start;
         if (round == 0) { /* takes long, and a long time needs no second one */
             covered = draw_ring(size, near, mask, truth);
             start = bench_now();

@@ -62,10 +62,10 @@ static double brute_force(const sdv_tree *tree, uint32_t resolution) {
     double start = bench_now();
     for (uint32_t i = 0; i < grid.cell_count; i += SAMPLED) {
         uint32_t x = i % grid.size[0], y = i / grid.size[0] % grid.size[1];
-        float z = (float)(i / grid.size[0] / grid.size[1]);
+        uint32_t z = i / grid.size[0] / grid.size[1];
         lao_v3 p = lao_v3_make(grid.origin.x + ((float)x + 0.5f) * grid.cell,
                                grid.origin.y + ((float)y + 0.5f) * grid.cell,
-                               grid.origin.z + (z + 0.5f) * grid.cell);
+                               grid.origin.z + ((float)z + 0.5f) * grid.cell);
         sum = sum + sdv_cones_distance(grid.cones, grid.cone_count, p, NULL);
     }
     double seconds = SAMPLED * (bench_now() - start);
@@ -425,13 +425,14 @@ typedef struct bench_trees {
 
 static bool trees_make(bench_trees *t, bool quick) {
     static const uint32_t fields[] = {1000, 6000}, rays[TREES] = {1000, 3000, 30000, 300000};
-    t->field_count = quick ? 1 : 2;
-    t->ray_count = quick ? 1 : TREES;
-    for (uint32_t i = 0; i < t->field_count; i++) {
+    const uint32_t field_count = quick ? 1 : 2, ray_count = quick ? 1 : TREES;
+    t->field_count = field_count;
+    t->ray_count = ray_count;
+    for (uint32_t i = 0; i < field_count; i++) {
         if (!make_tree(fields[i], &t->fields[i]))
             return false;
     }
-    for (uint32_t i = 0; i < t->ray_count; i++) {
+    for (uint32_t i = 0; i < ray_count; i++) {
         subject *s = &t->rays[i];
         if (!make_tree(rays[i], &s->tree) || !make_grid(&s->tree, quick ? 48 : 128, true, &s->grid))
             return false;
@@ -482,7 +483,9 @@ bool bench_vessel_run(cJSON *document, bool quick) {
     cJSON *rays = cJSON_AddArrayToObject(document, "rays");
     floored floor;
     const lao_module *module = floored_make(&floor);
-    bool ok = trees ? trees_make(trees, quick) : bench_fail("no memory");
+    bool ok = trees && trees_make(trees, quick);
+    if (!trees)
+        bench_fail("no memory");
     for (uint32_t i = 0; ok && i < trees->field_count; i++)
         ok = measure_field(fields, &trees->fields[i], 64) &&
              (quick || measure_field(fields, &trees->fields[i], 128));

@@ -190,10 +190,12 @@ static arrangement arrange_most(const picture *p, legend_side side, const legend
     const double usual = text_size(p), least = 8;
     arrangement made;
     for (count = count < MOST ? count : MOST; count > 0; count--) {
-        for (double size = usual; size >= least; size *= 0.9) {
+        double size = usual;
+        while (size >= least) {
             if (arrange(p, side, legends, count, size, false, &made) ||
                 (count > 1 && arrange(p, side, legends, count, size, true, &made)))
                 return made;
+            size *= 0.9;
         }
     }
     made.count = 0;

@@ -141,7 +141,7 @@ static uint32_t draw_row(const cli_sheet *sheet, const layout *l, uint32_t row, 
 
 /* Everything; returns the height. page NULL: only measured. */
 static uint32_t draw_sheet(const cli_sheet *sheet, const layout *l, picture *page) {
-    uint32_t y = l->gap, x = l->gap;
+    uint32_t x = l->gap, y = x;
     if (sheet->title)
         y += draw_lines(page, x, y, l->width - 2 * l->gap, sheet->title, &l->large) + l->gap / 2;
     if (sheet->titles) {

@@ -151,7 +151,7 @@ static bool load_flow(cli_wall *wall, bool volume, const embedded *flow) {
     options.lines = flow ? flow->line_count : 0;
     if (!source->path && !source->color)
         source->color = "speed"; /* the embedded flow's */
-    if (!source->path && !(source->settings.set & LAO_SET(width))) {
+    if (flow && !source->path && !(source->settings.set & LAO_SET(width))) {
         source->settings.width = flow->width;
         source->settings.set |= LAO_SET(width);
     }

@@ -35,17 +35,18 @@ static bool is_surface(const cli_tree *tree) {
 
 /* Positions about another origin than the tree's own. */
 static void move_origin(io_vessel *vessel, const double origin[3]) {
+    double shift[3];
     for (int k = 0; k < 3; k++) {
-        double shift = vessel->origin[k] - origin[k];
+        shift[k] = vessel->origin[k] - origin[k];
         vessel->origin[k] = origin[k];
-        if (shift == 0)
-            continue;
-        for (uint32_t i = 0; i < vessel->tree.node_count; i++) {
-            float *p = &vessel->tree.nodes[i].x + k;
-            *p = (float)((double)*p + shift);
-        }
         for (int i = 0; i < 2; i++)
-            vessel->tree.info.bounds[i][k] += (float)shift;
+            vessel->tree.info.bounds[i][k] += (float)shift[k];
+    }
+    for (uint32_t i = 0; i < vessel->tree.node_count; i++) {
+        lao_v4 *node = &vessel->tree.nodes[i];
+        node->x = (float)((double)node->x + shift[0]);
+        node->y = (float)((double)node->y + shift[1]);
+        node->z = (float)((double)node->z + shift[2]);
     }
 }
 

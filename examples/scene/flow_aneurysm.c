@@ -114,9 +114,9 @@ static void path_index(path *way) {
             for (uint32_t x = 0; x < way->size[0]; x++, out++) {
                 vec3 p = vec3_make(way->least[0] + x, way->least[1] + y, way->least[2] + z);
                 *out = 0;
-                for (uint8_t i = 1; i <= PATH; i++) {
+                for (int i = 1; i <= PATH; i++) {
                     if (distance2(p, way->points[i]) < distance2(p, way->points[*out]))
-                        *out = i;
+                        *out = (uint8_t)i;
                 }
             }
         }

@@ -17,6 +17,12 @@ static void absolute(const float *point, const double origin[3], double at[3]) {
         at[k] = (double)point[k] + origin[k];
 }
 
+static void node_place(const cli_tree *tree, uint32_t node, double at[3]) {
+    const lao_v4 *n = &tree->vessel.tree.nodes[node];
+    const float point[3] = {n->x, n->y, n->z};
+    absolute(point, tree->vessel.origin, at);
+}
+
 void marks_way(const view *v, const double a[3], const double b[3], uint32_t color, float width) {
     float from[2], to[2];
     if (stage_place(v, a, from) && stage_place(v, b, to))
@@ -34,8 +40,8 @@ static void mark_branch(const view *v, const picked *p, uint32_t color) {
         double a[3], b[3];
         if (tree->reduced.owners[i] != branch || parent == SDV_NONE)
             continue;
-        absolute(&tree->vessel.tree.nodes[parent].x, tree->vessel.origin, a);
-        absolute(&tree->vessel.tree.nodes[i].x, tree->vessel.origin, b);
+        node_place(tree, parent, a);
+        node_place(tree, i, b);
         marks_way(v, a, b, color, 2.5f);
     }
 }

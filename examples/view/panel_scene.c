@@ -16,7 +16,7 @@ static void open_line(view *v) {
     static const uint32_t most = 256;
     const char *words[256];
     uint32_t count = 0;
-    char copy[sizeof v->words], *text = copy, *to = copy;
+    char copy[sizeof v->words], *text = copy, *to;
     memcpy(copy, v->words, sizeof copy);
     while (*text && count < most) {
         char quote = 0;

@@ -403,8 +403,8 @@ static int files_of_video(void) {
 }
 
 static void test_videos(void **state) {
-    char *before = strdup(getenv("PATH") ? getenv("PATH") : ""), *here = getcwd(NULL, 0),
-         path[4096];
+    const char *set = getenv("PATH");
+    char *before = strdup(set ? set : ""), *here = getcwd(NULL, 0), path[4096];
     struct stat status;
     (void)state;
     assert_non_null(before);

@@ -49,6 +49,8 @@ bool screen_make(screen *s, uint32_t width, uint32_t height) {
 }
 
 void screen_free(screen *s) {
+    if (!s)
+        return;
     for (int i = 0; pyramid(s, i); i++)
         for (uint32_t l = 0; l < s->levels; l++)
             free(pyramid(s, i)[l]);
