@@ -461,6 +461,8 @@ static uint32_t use_module(cli_scene *scene, const lao_module *module) {
 }
 
 bool cli_scene_join(cli_scene *scene, cli_scene *part) {
+    if (part == scene)
+        return true;
     if (!scene->count)
         memcpy(scene->origin, part->origin, sizeof scene->origin);
     for (uint32_t i = 0; i < part->count; i++) {

@@ -582,7 +582,7 @@ static bool transfer(host_vk *host, const host_vk_image *image, VkImageLayout la
     if (ok && write)
         memcpy(mapped, in, size);
     ok = ok && copy(host, image, layout, buffer, write);
-    if (ok && !write)
+    if (ok && out)
         memcpy(out, mapped, size);
     vkDestroyBuffer(host->device, buffer, NULL);
     vkFreeMemory(host->device, memory, NULL);

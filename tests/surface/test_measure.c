@@ -47,7 +47,8 @@ static fixture fixture_make(surface_shape shape, uint32_t flags, int analytic) {
     assert_int_equal(f.mesh.vertex_count, shape.vertex_count);
     assert_int_equal(vsf_buffers_make(NULL, &f.mesh, 0, &f.buffers), LAO_OK);
     assert_true(shape.vertex_count > 0);
-    f.s = (float *)malloc(sizeof(float) * shape.vertex_count);
+    f.s = (float *)malloc(sizeof(float) * ((size_t)shape.vertex_count + 1));
+    assert_non_null(f.s);
     return f;
 }
 static void fixture_free(fixture *f) {
