@@ -66,6 +66,7 @@ typedef struct cli_scene {
     cli_volume *volumes;       /* owned; none unless --backdrop asks for them */
     uint32_t volume_count;
     cli_outline outline; /* no triangles unless --outline asks for it */
+    bool turns;          /* its frames are of one turn around it: all are framed at once */
     double beat[2];      /* first and last time (ms); equal: none */
     double period;       /* ms: of the first set that repeats, else from first to last time */
 } cli_scene;

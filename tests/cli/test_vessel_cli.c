@@ -414,6 +414,37 @@ static void read_pixels(const char *path, pixels *out) {
         fail_msg("%s", error);
 }
 
+/* No frame of a turn touches its rim; a single picture is framed as ever. */
+static void test_turn(void **state) {
+    (void)state;
+    expect_ok(RUN("vessel y.swc --unit mm " SMALL "--style plain --frames 8 -o t%%d.png"));
+    for (int frame = 0; frame < 8; frame++) {
+        char path[16];
+        pixels p;
+        snprintf(path, sizeof path, "t%d.png", frame);
+        read_pixels(path, &p);
+        size_t w = (size_t)p.width, h = (size_t)p.height, inked = 0;
+        for (size_t i = 0; i < w * h; i++) {
+            bool rim = i % w == 0 || i % w == w - 1 || i < w || i >= w * (h - 1);
+            bool paper = memcmp(p.rgb + 3 * i, p.rgb, 3) == 0;
+            assert_true(paper || !rim);
+            inked += !paper;
+        }
+        assert_true(inked > w * h / 40);
+        free(p.rgb);
+    }
+    const char *names[] = {"", "--frames 1 ", "--frames 2 "};
+    char *texts[3];
+    for (int i = 0; i < 3; i++) {
+        expect_ok(RUN("vessel y.swc --unit mm " SMALL "%s--save-camera turn.json", names[i]));
+        texts[i] = read_text("turn.json");
+    }
+    assert_string_equal(texts[0], texts[1]);
+    assert_string_not_equal(texts[0], texts[2]);
+    for (int i = 0; i < 3; i++)
+        free(texts[i]);
+}
+
 /* The layout drawn by the backend, beside the picture and without one: the same for both backends,
  * whatever the camera; where the trunk is, its colour. */
 static void test_layout_picture(void **state) {
@@ -780,6 +811,7 @@ int main(int argc, char **argv) {
         cmocka_unit_test(test_layout_and_tree),
         cmocka_unit_test(test_path),
         cmocka_unit_test(test_cameras),
+        cmocka_unit_test(test_turn),
         cmocka_unit_test(test_layout_picture),
         cmocka_unit_test(test_device_field),
         cmocka_unit_test(test_looks),
