@@ -84,7 +84,7 @@ static bool write_page(const char *path, stage *s) {
     picture whole;
     if (!picture_make(s->options->size[0], s->options->size[1], &whole))
         return cli_fail("out of memory");
-    bool ok = cli_page_draw(&s->page, s->trees, &s->shot, s->sessions, s->flats, &whole) &&
+    bool ok = cli_page_draw(&s->page, s->trees, s->sessions, s->flats, &whole) &&
               cli_write_pixels(path, s->video, &whole, opaque);
     picture_free(&whole);
     return ok;
@@ -153,6 +153,11 @@ static bool draw_all(stage *s, uint32_t flags) {
     return ok;
 }
 
+static bool number_all(stage *s) {
+    return !s->options->vessel.link || !s->options->out ||
+           cli_page_number(&s->page, s->trees, &s->shot, s->sessions);
+}
+
 static bool draw_views(stage *s, const view_list *views) {
     const cli_options *options = s->options;
     uint32_t flags = options->timings ? LAO_FRAME_TIMINGS : 0;
@@ -168,7 +173,7 @@ static bool draw_views(stage *s, const view_list *views) {
         if (views->count > 1)
             cli_progress_show(&progress, i, views->count);
         bool last = options->vessel.last, shown = !last || i + 1 == views->count;
-        ok = draw_all(s, flags) &&
+        ok = draw_all(s, flags) && number_all(s) &&
              (!shown || write_frame(s, views->numbered && !last ? (int64_t)i : -1));
     }
     cli_progress_end(&progress);
@@ -417,5 +422,6 @@ int cli_vessel(const cli_options *options) {
         cli_tree_free(&trees[i]);
     }
     cli_tree_free(&lens.tree);
+    cli_page_free(&s.page);
     return ok ? CLI_OK : CLI_FAILED;
 }
