@@ -6,6 +6,7 @@
 #include "io_read.h"
 
 enum { CLI_MODULES = 2 }; /* besides that of the lines */
+enum { CLI_NOTE = 128 };  /* bytes of a line about a picture */
 
 typedef struct cli_set {
     const cli_source *source;

@@ -97,8 +97,11 @@ float cli_node_distance(const cli_tree *tree, uint32_t node);
 bool cli_tree_colour(cli_tree *tree);
 /* The scale of the colours, if they show a number; its map and title are kept in the others. */
 bool cli_tree_scale(const cli_tree *tree, colour_map *map, char title[160], legend *out);
-/* The same beside a picture, at a side ("left", ...). False: reported. */
+/* The same beside a picture, at a side ("left", ...; "off" or NULL: none). False: reported. */
 bool cli_tree_legend(const cli_tree *tree, const char *side, picture *p);
+/* What a picture of this size has no room for, in words, or "". False: reported. */
+bool cli_tree_legend_check(const cli_tree *tree, const char *side, const uint32_t size[2],
+                           char note[CLI_NOTE]);
 
 /* The 2D layout drawn by the backend into a view of its own, for --layout NAME.png, in the colours
  * of the tree, which is prepared. False: reported, nothing to free. */

@@ -645,6 +645,25 @@ static void test_legend(void **state) {
     assert_in_range(differing(&with, &without, 150, 0, 138, 216), 500, 20000);
     free(with.rgb);
     free(without.rgb);
+    /* all commands say once what a small picture has no room for: as a line, or in the report */
+    const char *commands[] = {"vessel y.swc --unit mm --grid 48 --color radius --json",
+                              "vessel y.swc --unit mm --grid 48 --color radius --frames 2",
+                              "vessel y.swc --unit mm --color radius --layout out.png",
+                              "surface --scene aneurysm --json",
+                              "surface --scene aneurysm --frames 2",
+                              "render --scene flow --lines 20 --color speed"};
+    for (size_t i = 0; i < sizeof commands / sizeof *commands; i++) {
+        bool json = strstr(commands[i], "--json") != NULL, layout = strstr(commands[i], "--layout");
+        program_run run = RUN("%s --legend right --size 64x48 --ssaa 1 %s", commands[i],
+                              layout ? "" : "-o out.png");
+        const char *note = strstr(json ? run.out : run.err, "no room for");
+        assert_int_equal(run.code, 0);
+        assert_non_null(note);
+        assert_null(strstr(note + 1, "no room for"));
+        assert_true(!json || !*run.err);
+        assert_true(json || strncmp(run.err, "lineao: out.png: warning: no room", 33) == 0);
+        program_free(&run);
+    }
     expect_fault(RUN("vessel " Y "--legend left -o never.png"), 1, "--legend");
     assert_false(exists("never.png"));
 }
