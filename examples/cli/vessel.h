@@ -103,6 +103,15 @@ bool cli_tree_legend(const cli_tree *tree, const char *side, picture *p);
 bool cli_tree_legend_check(const cli_tree *tree, const char *side, const uint32_t size[2],
                            char note[CLI_NOTE]);
 
+/* How wide a layout's edges are: by the roots of their vessels' radii, in the page's unit. */
+typedef struct cli_edges {
+    double thin, thick;   /* half of the thinnest and of the widest */
+    double least, widest; /* roots of radii, mm */
+} cli_edges;
+/* pixel: the size of one on the page. */
+cli_edges cli_edges_make(const cli_tree *tree, double width, double height, double pixel);
+double cli_edge_half(const cli_edges *edges, const cli_tree *tree, uint32_t node);
+
 /* The 2D layout drawn by the backend into a view of its own, for --layout NAME.png, in the colours
  * of the tree, which is prepared. False: reported, nothing to free. */
 bool cli_layout_picture(const cli_tree *tree, picture *p);

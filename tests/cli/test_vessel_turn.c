@@ -1,6 +1,6 @@
 /* While a tree turns, the numbers of its branches at risk stay beside what they name: few of them
  * change sides in the tree's picture, none walks about in the layout's, and the same turn gives the
- * same places. */
+ * same places; a layout's edges are as wide as there is room for. */
 #include "report.h"
 #include "vessel_page.h"
 
@@ -9,6 +9,7 @@
 #include <stdarg.h>
 #include <stddef.h>
 #include <stdint.h>
+#include <stdio.h>
 #include <string.h>
 
 #include <cmocka.h>
@@ -136,8 +137,42 @@ static void numbers_stay(void **state) {
     assert_true(walked(&anew) > 0);
 }
 
+/* Edges of a layout: wider vessels have wider ones, none is thinner than can be seen, and the
+ * narrowest leave room between the leaves as long as pixels allow it. */
+static void edges_have_room(void **state) {
+    static const uint32_t nodes[] = {20, 300, 4000};
+    double before = HUGE_VAL;
+    (void)state;
+    for (int i = 0; i < 3; i++) {
+        cli_options options;
+        cli_tree tree;
+        char number[16], flag[] = "--nodes", out[] = "-o", name[] = "none.png";
+        char *words[] = {flag, number, out, name};
+        snprintf(number, sizeof number, "%u", nodes[i]);
+        assert_true(cli_parse(CLI_VESSEL, 4, words, &options));
+        assert_true(cli_tree_load(&options, NULL, 0, &tree));
+        const cli_edges e = cli_edges_make(&tree, 1600, 1200, 1),
+                        large = cli_edges_make(&tree, 1600, 1200, 1e-3);
+        const sdv_tree *t = &tree.vessel.tree;
+        for (uint32_t k = 0; k < t->node_count; k++) {
+            double half = cli_edge_half(&e, &tree, k),
+                   next = cli_edge_half(&e, &tree, t->node_count - 1 - k);
+            assert_true(half >= e.thin - 1e-9 && half <= e.thick + 1e-9);
+            if (t->nodes[k].w > t->nodes[t->node_count - 1 - k].w)
+                assert_true(half >= next);
+        }
+        assert_true(e.thin >= 0.7 && e.thick >= 4.8 && e.thin <= before);
+        assert_true(2 * large.thin <=
+                    1600.0 / tree.reduced.node_count); /* where pixels are small */
+        before = e.thin;
+        cli_tree_free(&tree);
+        cli_options_free(&options);
+    }
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
+        cmocka_unit_test(edges_have_room),
         cmocka_unit_test(numbers_stay),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
