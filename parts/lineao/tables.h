@@ -1,6 +1,18 @@
 /* ================================================================================================
- * tables: the module of line sets: its images, passes, buffers, settings and presets. Uses no
-   other section. */
+ * tables: the module of line sets: its images, passes, buffers, settings and presets. The
+   implementation begins here and ends with the last section; all of it uses the interface and the
+   shared text. */
+#ifdef LINEAO_IMPLEMENTATION
+#ifndef LINEAO_IMPLEMENTATION_DONE
+#define LINEAO_IMPLEMENTATION_DONE
+
+#ifndef LAO_ASSERT
+#define LAO_ASSERT(condition) ((void)0)
+#endif
+
+#ifdef __cplusplus
+extern "C" {
+#endif
 
 // clang-format off
 #define LAO__NOTHING {NULL, LAO_LEVEL_SAME, 0, LAO_PHASE_THIS, LAO_LOAD_DISCARD}
