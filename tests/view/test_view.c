@@ -268,12 +268,23 @@ static void focuses_surfaces(fixture *f) {
     assert_int_not_equal(system("cmp -s program.png sharp.png"), 0); /* the blur was one */
 }
 
+/* Of a wall that nothing lights: its look is offered, but nothing of that light. */
+static void offers_what_has_a_meaning(desktop *d) {
+    char name[64];
+    assert_true(user_finds(d, "near_colors ##value", 0, name, sizeof name));
+    assert_true(user_finds(d, "value_low ##value", 0, name, sizeof name));
+    assert_false(user_finds(d, "near_gamma ##value", 0, name, sizeof name));
+    assert_false(user_finds(d, "near_part ##value", 0, name, sizeof name));
+    assert_false(user_finds(d, "near_steps ##value", 0, name, sizeof name));
+}
+
 static void saves_surfaces(void **state) {
     static const char *const words[] = {"surface", "--scene",    "bone", "--ssaa",
                                         "1",       "--contours", "0.3",  NULL};
     fixture *f = *state;
     start(f, words);
     writes_what_the_program_writes(f->desktop, "opacity");
+    offers_what_has_a_meaning(f->desktop);
     focuses_surfaces(f);
     quit(f);
 }
@@ -652,6 +663,19 @@ static void names_what_it_points_at(desktop *d) {
     assert_int_equal(viewer_said(d, "frame "), frames);
 }
 
+/* Of a file that cannot be read; then there is nothing to draw, and nothing is done. */
+static void explains_and_rests(void **state) {
+    fixture *f = *state;
+    const char *words[] = {"--backend", f->backend, "--window", "700x400", "broken.swc", NULL};
+    write_file("broken.swc", "1 1 0 0\n");
+    viewer_start(f->desktop, viewer, words);
+    assert_non_null(strstr(viewer_hears(f->desktop, "error "), "broken.swc"));
+    viewer_rests(f->desktop);
+    user_clicks(f->desktop, "Close");
+    viewer_rests(f->desktop);
+    quit(f);
+}
+
 /* Lines, a tree and a wall in one picture; then without one of them. */
 static void mixes(void **state) {
     static const char *const words[] = {
@@ -922,6 +946,7 @@ int main(int argc, char **argv) {
         {"makes_videos", makes_videos, NULL, clean_up, &f},
         {"follows_the_monitor", follows_the_monitor, NULL, clean_up, &f},
         {"picks_and_opens", picks_and_opens, NULL, clean_up, &f},
+        {"explains_and_rests", explains_and_rests, NULL, clean_up, &f},
         {"mixes", mixes, NULL, clean_up, &f},
         {"relights_walls", relights_walls, NULL, clean_up, &f},
         {"long_places_on_trees", long_places_on_trees, NULL, clean_up, &f},
