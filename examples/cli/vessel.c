@@ -417,6 +417,8 @@ static bool make_scene(cli_tree *tree) {
     set->source = tree->source;
     set->name = tree->name;
     set->settings = tree->source->settings;
+    set->settings.occlusion = 0; /* it has no lines: half of all shaders need not be built */
+    set->settings.set |= LAO_SET(occlusion);
     set->object = &tree->object.desc;
     set->tree = tree;
     make_settings(tree, &tree->settings);
