@@ -20,6 +20,15 @@ static bool on_progress(void *user, uint64_t done, uint64_t total) {
     return cli_interrupted();
 }
 
+/* Who reads what `vessel` and `surface` do not. */
+static const char *other_command(const cli_source *source, unsigned wanted, const char *fault) {
+    if (wanted != (IO_TREE | IO_MESH) || source->as)
+        return "";
+    if (io_is_volume(source->path))
+        return "; it is a volume: lineao surface draws its wall and lineao flow traces its lines";
+    return strstr(fault, "), not a ") ? "; lineao render draws it" : "";
+}
+
 bool cli_read(const cli_source *source, unsigned wanted, io_contents *out) {
     cli_progress progress = {"reading", source->path, -1};
     io_options options;
@@ -34,7 +43,9 @@ bool cli_read(const cli_source *source, unsigned wanted, io_contents *out) {
     bool ok = io_read(source->path, wanted, &options, out, &error);
     cli_progress_end(&progress);
     if (!ok)
-        return cli_interrupted() ? cli_go_on() : cli_fail("%s: %s", source->path, error.text);
+        return cli_interrupted() ? cli_go_on()
+                                 : cli_fail("%s: %s%s", source->path, error.text,
+                                            other_command(source, wanted, error.text));
     if (!cli_go_on()) {
         io_contents_free(out);
         return false;
@@ -483,6 +494,9 @@ bool cli_scene_join(cli_scene *scene, cli_scene *part) {
 void cli_scene_warn(const cli_scene *scene) {
     char text[512];
     for (uint32_t i = 0; i < scene->count; i++) {
+        const cli_set *set = &scene->sets[i];
+        if (!set->object && !set->overlay && set->lines.point_count == 0)
+            cli_warn(set->name, "there are no lines to draw");
         for (uint32_t w = 0; w < scene->sets[i].lines.warning_count; w++)
             cli_warn(scene->sets[i].name, scene->sets[i].lines.warnings[w]);
     }
