@@ -35,6 +35,9 @@ char *camera_print(const camera_pose *camera);
 
 /* Writes that text and a line end. */
 bool camera_write(const char *path, const camera_pose *camera, char error[CAMERA_ERROR_SIZE]);
+/* Of several an array, which camera_read_all reads. */
+bool camera_write_all(const char *path, const camera_pose *cameras, uint32_t count,
+                      char error[CAMERA_ERROR_SIZE]);
 
 /* Direction of view and up vector of "axial", "coronal", "sagittal" or "iso"; else false.
  *   axial     from above (-z), front up: neurological, the patient's right is on the right

@@ -8,8 +8,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* The unit of an attribute that is known by its name, or NULL. */
-static const char *unit_of(const char *attribute) {
+const char *cli_attribute_unit(const char *attribute) {
     static const char *const units[][2] = {{"time", "ms"}, {"speed", "m/s"}, {"velocity", "m/s"}};
     for (size_t i = 0; i < sizeof units / sizeof *units; i++) {
         if (strcmp(units[i][0], attribute) == 0)
@@ -37,7 +36,7 @@ static bool is_known(const cli_scene *scene, uint32_t set) {
 }
 
 static void add_set(scales *s, const cli_set *set) {
-    const char *unit = unit_of(set->value);
+    const char *unit = cli_attribute_unit(set->value);
     char *title = s->titles[s->made];
     snprintf(title, TITLE, "%s%s%s%s", set->value, unit ? " (" : "", unit ? unit : "",
              unit ? ")" : "");

@@ -5,6 +5,9 @@
 #include "legend.h"
 #include "load.h"
 
+/* The unit of an attribute that is known by its name, or NULL. */
+const char *cli_attribute_unit(const char *attribute);
+
 /* Draws the legends of the sets' and objects' colours at the side that --legend names, unless that
  * is "off", and `more` (at most 4) before them. --legend-title is the first one's. False: reported.
  */

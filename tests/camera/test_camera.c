@@ -268,13 +268,7 @@ static void files_round_trip(void **state) {
         assert_memory_equal(all, &written[i], sizeof read);
         free(all);
     }
-    FILE *file = fopen(path, "w");
-    assert_non_null(file);
-    char *first = camera_print(&written[0]), *second = camera_print(&written[1]);
-    fprintf(file, "[%s,\n%s]", first, second);
-    fclose(file);
-    free(first);
-    free(second);
+    assert_true(camera_write_all(path, written, 2, error));
     camera_pose *all = NULL;
     uint32_t count = 0;
     assert_true(camera_read_all(path, &all, &count, error));

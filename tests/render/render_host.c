@@ -28,13 +28,13 @@ void render_endless(int on) {
 }
 
 static struct {
-    const lao_module *const *list;
+    const lao_module *list[RENDER_MOST_MODULES];
     uint32_t count;
 } modules;
 
-void render_modules(const lao_module *const *list, uint32_t count) {
-    modules.list = list;
-    modules.count = count;
+void render_module(const lao_module *module) {
+    assert_true(modules.count < RENDER_MOST_MODULES);
+    modules.list[modules.count++] = module;
 }
 
 /* The row of an image by its number in the graph. */
@@ -183,6 +183,26 @@ void render_need(const render_device *device) {
     if (getenv("LINEAO_EXPECT_GPU"))
         fail_msg("LINEAO_EXPECT_GPU is set");
     skip();
+}
+
+render_device render_devices[RENDER_DEVICES];
+
+int render_open_opengl(void **state) {
+    (void)state;
+    render_open_gl(&render_devices[RENDER_GL], NULL);
+    return 0;
+}
+
+int render_open_both(void **state) {
+    render_open_vk(&render_devices[RENDER_VK], 0);
+    return render_open_opengl(state);
+}
+
+int render_close_both(void **state) {
+    (void)state;
+    render_close(&render_devices[RENDER_GL]);
+    render_close(&render_devices[RENDER_VK]);
+    return 0;
 }
 
 /* ----------------------------------------------------------------------------------- line sets */
@@ -678,6 +698,13 @@ void render_draw(render_device *device, const render_shot *shot, render_result *
     }
 }
 
+void render_draw_both(const render_shot *shot, render_result results[RENDER_DEVICES]) {
+    for (int i = 0; i < RENDER_DEVICES; i++) {
+        render_need(&render_devices[i]);
+        render_draw(&render_devices[i], shot, &results[i]);
+    }
+}
+
 void render_free(render_result *result) {
     for (uint32_t i = 0; i < result->count; i++)
         free(result->images[i].data);
@@ -762,4 +789,20 @@ render_difference render_compare(const char *what, const render_image *a, const 
         print_message("\n");
     }
     return d;
+}
+
+void render_same_image(const char *name, const render_result *a, const render_result *b) {
+    const render_image *x = render_find(a, name, 0), *y = render_find(b, name, 0);
+    assert_true(x && y);
+    assert_int_equal(render_compare(name, x, y).texels, 0);
+}
+
+void render_same_images(const char *what, const render_result *a, const render_result *b) {
+    for (uint32_t i = 0; i < a->count; i++) {
+        const render_image *image = &a->images[i];
+        const render_image *other = render_find(b, image->name, image->level);
+        assert_non_null(other);
+        if (render_compare(what, image, other).texels > 0)
+            fail_msg("%s: image %s of level %u differs", what, image->name, image->level);
+    }
 }

@@ -13,7 +13,7 @@
 
 #include <cmocka.h>
 
-enum { RENDER_MOST_IMAGES = 256, RENDER_MOST_SETS = 4 };
+enum { RENDER_MOST_IMAGES = 256, RENDER_MOST_SETS = 4, RENDER_MOST_MODULES = 4 };
 
 /* ---- devices ---------------------------------------------------------------------------- */
 
@@ -30,16 +30,24 @@ typedef struct render_device {
 
 /* From now on every window of time is without end: whatever has times is drawn (on != 0). */
 void render_endless(int on);
+/* A further module of the contexts that are opened from now on. */
+void render_module(const lao_module *module);
 /* Opens a device with a context on it. `get_proc` NULL: the driver's; api_version 0: 1.3. Returns 0
  * where there is none: the test skips, or fails where a GPU is expected. */
-/* Further modules of the contexts that are opened from now on; the array must stay. */
-void render_modules(const lao_module *const *modules, uint32_t count);
 int render_open_gl(render_device *device, void *(*get_proc)(const char *name, void *user));
 int render_open_vk(render_device *device, uint32_t api_version);
 /* Views are kept until here, so that no shader is compiled twice. Fine on a closed one. */
 void render_close(render_device *device);
 /* Unless the device is open: skips the test, or fails it where LINEAO_EXPECT_GPU is set. */
 void render_need(const render_device *device);
+
+/* The devices of a test program, and what a group of tests begins and ends with. Where a device is
+ * missing the group begins all the same: its tests say so with render_need. */
+enum { RENDER_GL, RENDER_VK, RENDER_DEVICES };
+extern render_device render_devices[RENDER_DEVICES];
+int render_open_both(void **state);
+int render_open_opengl(void **state);
+int render_close_both(void **state);
 
 /* ---- line sets -------------------------------------------------------------------------- */
 
@@ -121,6 +129,8 @@ typedef struct render_result {
 
 /* Draws and reads everything; fails the test when something does. */
 void render_draw(render_device *device, const render_shot *shot, render_result *result);
+/* On each of render_devices; needs them. */
+void render_draw_both(const render_shot *shot, render_result results[RENDER_DEVICES]);
 void render_free(render_result *result);
 const render_image *render_find(const render_result *result, const char *name, uint32_t level);
 /* The image's numbers as lao_read would decode one channel. For the caller's free(). */
@@ -135,5 +145,8 @@ typedef struct render_difference {
 
 /* Prints one line when they differ. */
 render_difference render_compare(const char *what, const render_image *a, const render_image *b);
+/* Fail where a bit differs: of this image of level 0; of any image of `a`, all of which `b` has. */
+void render_same_image(const char *name, const render_result *a, const render_result *b);
+void render_same_images(const char *what, const render_result *a, const render_result *b);
 
 #endif

@@ -11,7 +11,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-static render_device gl;
+static render_device *const gl = &render_devices[RENDER_GL];
 
 enum { SIZE = 300, FRAMES = 5 };
 
@@ -153,7 +153,7 @@ static void animate(uint32_t share) {
     measure measures[PATTERNS][2];
     render_lines moving = {0}, still = {0};
     lao_settings settings;
-    render_need(&gl);
+    render_need(gl);
     scene_build(&moving, &still, share);
     print_message("one line in %u moves\n", share);
     memset(measures, 0, sizeof measures);
@@ -172,7 +172,7 @@ static void animate(uint32_t share) {
         shot.settings[0] = &settings;
         shot.set_count = 1;
         shot.time = (float)(400 + 8.33 * f);
-        render_draw(&gl, &shot, &results[f]);
+        render_draw(gl, &shot, &results[f]);
         c_inputs_find(&inputs[f], &results[f], &settings);
         render_lines_free(&all);
     }
@@ -182,7 +182,7 @@ static void animate(uint32_t share) {
             inputs[f].noise = patterns[p].noise;
             inputs[f].noise_frame = (uint32_t)f;
             aos[f] = c_occlusion(&inputs[f]);
-            if (p == 0 && gl.software)
+            if (p == 0 && gl->software)
                 assert_int_equal(render_compare("occlusion", &aos[f], inputs[f].ao).texels, 0);
         }
         for (int f = 1; f < FRAMES; f++)
@@ -219,19 +219,7 @@ static void test_patterns(void **state) {
     animate(2);
 }
 
-static int setup(void **state) {
-    (void)state;
-    render_open_gl(&gl, NULL);
-    return 0;
-}
-
-static int teardown(void **state) {
-    (void)state;
-    render_close(&gl);
-    return 0;
-}
-
 int main(void) {
     const struct CMUnitTest tests[] = {cmocka_unit_test(test_patterns)};
-    return cmocka_run_group_tests(tests, setup, teardown);
+    return cmocka_run_group_tests(tests, render_open_opengl, render_close_both);
 }

@@ -6,7 +6,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-static render_device gl, vk;
+static render_device *const gl = &render_devices[RENDER_GL];
+static render_device *const vk = &render_devices[RENDER_VK];
 static render_lines tangle;
 
 enum { NEGATIVE_ONE = 1, REVERSED = 2, LEFT_HANDED = 4, UPSIDE_DOWN = 8, COMBINATIONS = 16 };
@@ -112,29 +113,23 @@ static void conventions(render_device *device) {
 
 static void test_gl(void **state) {
     (void)state;
-    conventions(&gl);
+    conventions(gl);
 }
 
 static void test_vk(void **state) {
     (void)state;
-    conventions(&vk);
+    conventions(vk);
 }
 
 static int setup(void **state) {
-    (void)state;
     render_scatter(&tangle, 100, 3, 12, 9, 7);
     render_scene(&tangle, "helix", 10, 0.2, 0, 0, 0);
-    render_open_gl(&gl, NULL);
-    render_open_vk(&vk, 0);
-    return 0;
+    return render_open_both(state);
 }
 
 static int teardown(void **state) {
-    (void)state;
-    render_close(&gl);
-    render_close(&vk);
     render_lines_free(&tangle);
-    return 0;
+    return render_close_both(state);
 }
 
 int main(void) {

@@ -11,8 +11,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-static render_device devices[2]; /* OpenGL, Vulkan */
-
 enum { SIZE = 160 };
 static const double slack = 0.03; /* of s or px: the rasteriser's grid */
 
@@ -97,13 +95,13 @@ static void test_widths(void **state) {
     static const float widths[] = {0.1f, 0.25f};
     (void)state;
     for (int d = 0; d < 2; d++) {
-        render_need(&devices[d]);
+        render_need(&render_devices[d]);
         for (int i = 0; i < 2; i++) {
             lao_settings s = plain(61, LAO_HALO_UNIFORM);
             s.halo_width = widths[i];
-            borders(&devices[d], s, 1 - (double)widths[i], 0.4 * i);
+            borders(&render_devices[d], s, 1 - (double)widths[i], 0.4 * i);
             s.halo = LAO_HALO_DEPTH;
-            borders(&devices[d], s, 1 - 2 * (double)widths[i], 0.4 * i);
+            borders(&render_devices[d], s, 1 - 2 * (double)widths[i], 0.4 * i);
         }
     }
 }
@@ -117,14 +115,14 @@ static void test_soft(void **state) {
         render_shot shot = shot_of(&lines, &settings);
         render_result result;
         const render_image *color;
-        render_need(&devices[d]);
+        render_need(&render_devices[d]);
         settings.halo_border = LAO_HALO_SOFT;
         settings.halo_width = 0.25f;
         render_point(&lines, -70, 0, 0);
         render_point(&lines, 70, 0, 0);
         render_line(&lines);
         paint(&lines, 0, 250, 250, 250);
-        render_draw(&devices[d], &shot, &result);
+        render_draw(&render_devices[d], &shot, &result);
         color = render_find(&result, "color", 0);
         for (int y = 30; y < 130; y++) {
             double s = fabs(y + 0.5 - 80) / 50.5, light = s < 0.5 ? 1 : pow((1 - s) / 0.5, 2);
@@ -220,14 +218,14 @@ static void test_depth(void **state) {
     static const double gaps[] = {0.5, 0.95, 1.1};
     (void)state;
     for (int d = 0; d < 2; d++) {
-        render_need(&devices[d]);
+        render_need(&render_devices[d]);
         for (int i = 0; i < 3 * 4 * 3; i++) {
             crossing it;
             it.reach = i % 2 ? 1 : 4;
             it.gap = gaps[i % 3] * it.reach;
             it.camera = i / 3 % 4;
             it.function = i / 12;
-            crossed(&devices[d], it, i & 1);
+            crossed(&render_devices[d], it, i & 1);
         }
     }
 }
@@ -236,7 +234,7 @@ static void test_depth(void **state) {
 static void test_far_plane(void **state) {
     (void)state;
     for (int i = 0; i < 8; i++) {
-        render_device *device = &devices[i & 1];
+        render_device *device = &render_devices[i & 1];
         render_lines lines = {0};
         lao_settings settings = plain(40, LAO_HALO_DEPTH);
         render_shot shot = shot_of(&lines, &settings);
@@ -333,12 +331,12 @@ static void test_joints(void **state) {
     static const double turns[] = {0.2, 0.7, 1.2, 1.54, 1.6, 2.0, 2.4};
     (void)state;
     for (int d = 0; d < 2; d++) {
-        render_need(&devices[d]);
+        render_need(&render_devices[d]);
         for (int halo = LAO_HALO_UNIFORM; halo <= LAO_HALO_DEPTH; halo++) {
             for (size_t i = 0; i < sizeof turns / sizeof *turns; i++)
-                outline(&devices[d], halo, turns[i], 0);
+                outline(&render_devices[d], halo, turns[i], 0);
             for (int closed = 3; closed < 24; closed += 5)
-                outline(&devices[d], halo, 0, closed);
+                outline(&render_devices[d], halo, 0, closed);
         }
     }
 }
@@ -360,7 +358,7 @@ static void test_order(void **state) {
         render_line(&backwards);
     }
     for (int i = 0; i < 6; i++) {
-        render_device *device = &devices[i & 1];
+        render_device *device = &render_devices[i & 1];
         lao_settings settings = plain(1.1, i / 2);
         render_shot shot = shot_of(&lines, &settings);
         render_result a, b;
@@ -371,11 +369,7 @@ static void test_order(void **state) {
         render_draw(device, &shot, &a);
         shot.lines[0] = &backwards;
         render_draw(device, &shot, &b);
-        for (uint32_t k = 0; k < a.count; k++)
-            assert_int_equal(render_compare("order of lines", &a.images[k],
-                                            render_find(&b, a.images[k].name, a.images[k].level))
-                                 .texels,
-                             0);
+        render_same_images("order of lines", &a, &b);
         render_free(&a);
         render_free(&b);
     }
@@ -401,20 +395,6 @@ static void test_who_writes_depth(void **state) {
     assert_int_equal(found, 3);
 }
 
-static int setup(void **state) {
-    (void)state;
-    render_open_gl(&devices[0], NULL);
-    render_open_vk(&devices[1], 0);
-    return 0;
-}
-
-static int teardown(void **state) {
-    (void)state;
-    render_close(&devices[0]);
-    render_close(&devices[1]);
-    return 0;
-}
-
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_widths),
@@ -425,5 +405,5 @@ int main(void) {
         cmocka_unit_test(test_order),
         cmocka_unit_test(test_who_writes_depth),
     };
-    return cmocka_run_group_tests(tests, setup, teardown);
+    return cmocka_run_group_tests(tests, render_open_both, render_close_both);
 }

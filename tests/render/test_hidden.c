@@ -7,8 +7,6 @@
 #include <stdio.h>
 #include <string.h>
 
-static render_device devices[2]; /* OpenGL, Vulkan */
-
 enum { SIZE = 160 };
 
 /* One number in [0, 1) after the other. */
@@ -54,12 +52,7 @@ static int has_row(const render_result *result, const char *image) {
 static void same(int which, const render_result *whole, const render_result *parts) {
     char what[32];
     snprintf(what, sizeof what, "case %d", which);
-    for (uint32_t k = 0; k < whole->count; k++) {
-        const render_image *image = &whole->images[k];
-        const render_image *other = render_find(parts, image->name, image->level);
-        if (render_compare(what, image, other).texels != 0)
-            fail_msg("case %d: image %s of level %u differs", which, image->name, image->level);
-    }
+    render_same_images(what, whole, parts);
     if (whole->depth_after.data)
         assert_int_equal(render_compare(what, &whole->depth_after, &parts->depth_after).texels, 0);
 }
@@ -95,7 +88,7 @@ static void test_same_picture(void **state) {
     render_lines lines = tangle(2000, 1), second = tangle(1000, 2), longer = tangle_of(2000, 5, 9);
     uint32_t parted = 0;
     for (int i = 0; i < 36; i++) {
-        render_device *device = &devices[i & 1];
+        render_device *device = &render_devices[i & 1];
         lao_settings on = settings_of(i / 2), off = on;
         render_result whole, parts;
         render_shot shot;
@@ -137,14 +130,14 @@ static void test_farthest_depth(void **state) {
         lao_settings settings = settings_of(0);
         render_result result;
         render_shot shot;
-        render_need(&devices[d]);
+        render_need(&render_devices[d]);
         memset(&shot, 0, sizeof shot);
         shot.width = shot.height = SIZE;
         camera_of(1, &shot.camera);
         shot.lines[0] = &lines;
         shot.settings[0] = &settings;
         shot.set_count = 1;
-        render_draw(&devices[d], &shot, &result);
+        render_draw(&render_devices[d], &shot, &result);
         const render_image *z = render_find(&result, "zbuffer", 0);
         const render_image *far = render_find(&result, "far", 2);
         const float *last = (const void *)z->data, *first = (const void *)far->data;
@@ -170,7 +163,7 @@ static void test_few_lines(void **state) {
         lao_settings settings = settings_of(1);
         render_result result;
         render_shot shot;
-        render_need(&devices[i & 1]);
+        render_need(&render_devices[i & 1]);
         settings.trail = i < 4 ? 0.0f : (float)(i < 5 ? LAO_TRAIL_TAPER : LAO_TRAIL_OPACITY);
         memset(&shot, 0, sizeof shot);
         shot.width = shot.height = i < 2 ? 16 : SIZE;
@@ -178,25 +171,11 @@ static void test_few_lines(void **state) {
         shot.lines[0] = &lines;
         shot.settings[0] = &settings;
         shot.set_count = 1;
-        render_draw(&devices[i & 1], &shot, &result);
+        render_draw(&render_devices[i & 1], &shot, &result);
         assert_false(has_row(&result, "far"));
         render_free(&result);
         render_lines_free(&lines);
     }
-}
-
-static int setup(void **state) {
-    (void)state;
-    render_open_gl(&devices[0], NULL);
-    render_open_vk(&devices[1], 0);
-    return 0;
-}
-
-static int teardown(void **state) {
-    (void)state;
-    render_close(&devices[0]);
-    render_close(&devices[1]);
-    return 0;
 }
 
 int main(void) {
@@ -205,5 +184,5 @@ int main(void) {
         cmocka_unit_test(test_farthest_depth),
         cmocka_unit_test(test_few_lines),
     };
-    return cmocka_run_group_tests(tests, setup, teardown);
+    return cmocka_run_group_tests(tests, render_open_both, render_close_both);
 }

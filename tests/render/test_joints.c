@@ -8,7 +8,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-static render_device gl;
+static render_device *const gl = &render_devices[RENDER_GL];
 
 /* One unit of a test is a pixel: orthographic, 1 mm per pixel, seen along -z. */
 enum { SIZE = 160 };
@@ -92,7 +92,7 @@ static render_result draw_flat(const render_lines *lines, double width) {
     shot.lines[0] = lines;
     shot.settings[0] = &settings;
     shot.set_count = 1;
-    render_draw(&gl, &shot, &result);
+    render_draw(gl, &shot, &result);
     return result;
 }
 
@@ -154,7 +154,7 @@ static void arc(render_lines *lines, double radius, int points, double turns) {
 
 static void test_segment(void **state) {
     (void)state;
-    render_need(&gl);
+    render_need(gl);
     for (int i = 0; i < 12; i++) {
         render_lines lines = {0};
         double angle = 0.13 + 0.5236 * i;
@@ -168,7 +168,7 @@ static void test_segment(void **state) {
 static void test_zigzag(void **state) {
     static const double turns[] = {3, 20, 45, 59, 61, 85, 89.9, 90.1, 100, 120, 150, 165, 175, 179};
     (void)state;
-    render_need(&gl);
+    render_need(gl);
     for (size_t i = 0; i < sizeof turns / sizeof *turns; i++) {
         render_lines lines = {0};
         double half = turns[i] * 3.14159265358979 / 360, x = -60, y = -20;
@@ -184,7 +184,7 @@ static void test_zigzag(void **state) {
 
 static void test_hairpin(void **state) {
     (void)state;
-    render_need(&gl);
+    render_need(gl);
     for (int i = 0; i < 5; i++) {
         render_lines lines = {0};
         double angle = 0.3 * i;
@@ -200,7 +200,7 @@ static void test_hairpin(void **state) {
 static void test_closed(void **state) {
     static const int corners[] = {3, 4, 5, 7, 12, 64};
     (void)state;
-    render_need(&gl);
+    render_need(gl);
     for (size_t i = 0; i < sizeof corners / sizeof *corners; i++) {
         render_lines lines = {0};
         arc(&lines, 55, corners[i] + 1, 1);
@@ -212,7 +212,7 @@ static void test_closed(void **state) {
 static void test_no_seam(void **state) {
     render_result results[2];
     (void)state;
-    render_need(&gl);
+    render_need(gl);
     for (int start = 0; start < 2; start++) {
         render_lines lines = {0};
         for (int i = 0; i <= 24; i++) {
@@ -238,7 +238,7 @@ static void test_no_seam(void **state) {
 /* Curves of short pieces, wider than a piece is long but not than the curve. */
 static void test_curves(void **state) {
     (void)state;
-    render_need(&gl);
+    render_need(gl);
     for (int i = 0; i < 6; i++) {
         render_lines lines = {0};
         double radius = 8 + 9 * i;
@@ -251,7 +251,7 @@ static void test_curves(void **state) {
  * its width are covered. */
 static void test_tight_curves(void **state) {
     (void)state;
-    render_need(&gl);
+    render_need(gl);
     for (int i = 0; i < 6; i++) {
         render_lines lines = {0};
         double radius = 1 + i;
@@ -262,7 +262,7 @@ static void test_tight_curves(void **state) {
 
 static void test_random_walks(void **state) {
     (void)state;
-    render_need(&gl);
+    render_need(gl);
     for (uint32_t seed = 0; seed < 12; seed++) {
         render_lines lines = {0};
         double x = 0, y = 0, angle = 0;
@@ -292,7 +292,7 @@ static void test_random_walks(void **state) {
 /* A piece that runs along the view is a point on the screen; the line goes on behind it. */
 static void test_end_on(void **state) {
     (void)state;
-    render_need(&gl);
+    render_need(gl);
     for (int i = 0; i < 18; i++) {
         render_lines lines = {0};
         double in = 0.35 * (i % 3), out = in + 6.283185307179586 * i / 18;
@@ -310,7 +310,7 @@ static void test_only_end_on(void **state) {
     render_result result;
     const render_image *color;
     (void)state;
-    render_need(&gl);
+    render_need(gl);
     render_point(&lines, 0.5, 0.5, 10);
     render_point(&lines, 0.5, 0.5, -10);
     render_line(&lines);
@@ -360,7 +360,7 @@ static void past_the_eye(double near, const double *z, int count) {
     shot.lines[0] = &lines;
     shot.settings[0] = &settings;
     shot.set_count = 1;
-    render_draw(&gl, &shot, &result);
+    render_draw(gl, &shot, &result);
     color = render_find(&result, "color", 0);
     for (int y = 0; y < SIZE; y++) {
         for (int x = 0; x < SIZE; x++) {
@@ -384,7 +384,7 @@ static void test_near_plane(void **state) {
     static const double behind[] = {-10, 5}, at_the_eye[] = {-10, 0}, steps[] = {-10, -1, 0, 1},
                         close[] = {-10, -1e-3, 3};
     (void)state;
-    render_need(&gl);
+    render_need(gl);
     past_the_eye(0.5, behind, 2);
     past_the_eye(1.6, behind, 2);
     past_the_eye(0.5, at_the_eye, 2);
@@ -399,7 +399,7 @@ static void test_two_million_points(void **state) {
     uint32_t count = 0;
     const render_image *color;
     (void)state;
-    render_need(&gl);
+    render_need(gl);
     for (uint32_t i = 0; i < LINES; i++) {
         for (uint32_t k = 0; k < POINTS; k++) {
             double t = 6.283185307179586 * k / POINTS, r = 70.0 * i / LINES;
@@ -408,26 +408,14 @@ static void test_two_million_points(void **state) {
         render_line(&lines);
     }
     result = draw_flat(&lines, 0.5);
-    print_message("2 million points: %.0f ms\n", gl.milliseconds);
-    assert_true(gl.milliseconds < 60000);
+    print_message("2 million points: %.0f ms\n", gl->milliseconds);
+    assert_true(gl->milliseconds < 60000);
     color = render_find(&result, "color", 0);
     for (int i = 0; i < SIZE * SIZE; i++)
         count += color->data[4 * i + 3] != 0;
     assert_true(count > SIZE * SIZE / 4);
     render_free(&result);
     render_lines_free(&lines);
-}
-
-static int setup(void **state) {
-    (void)state;
-    render_open_gl(&gl, NULL);
-    return 0;
-}
-
-static int teardown(void **state) {
-    (void)state;
-    render_close(&gl);
-    return 0;
 }
 
 int main(void) {
@@ -439,5 +427,5 @@ int main(void) {
         cmocka_unit_test(test_end_on),       cmocka_unit_test(test_only_end_on),
         cmocka_unit_test(test_near_plane),   cmocka_unit_test(test_two_million_points),
     };
-    return cmocka_run_group_tests(tests, setup, teardown);
+    return cmocka_run_group_tests(tests, render_open_opengl, render_close_both);
 }

@@ -7,7 +7,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-static render_device gl;
+static render_device *const gl = &render_devices[RENDER_GL];
 static render_lines tangle;
 
 enum { SIZE = 96 };
@@ -53,7 +53,7 @@ static picture shoot_at(const render_lines *lines, const lao_settings *settings,
     shot.lines[0] = lines;
     shot.settings[0] = settings;
     shot.set_count = 1;
-    render_draw(&gl, &shot, &result);
+    render_draw(gl, &shot, &result);
     p.size = size;
     p.ao = render_floats(render_find(&result, "ao", 0), 0);
     p.mask = render_floats(render_find(&result, "color", 0), 3);
@@ -125,7 +125,7 @@ static void test_along_the_view(void **state) {
     picture a, b;
     double difference;
     (void)state;
-    render_need(&gl);
+    render_need(gl);
     for (uint32_t line = 0; line < tangle.line_count; line++) {
         for (uint32_t i = tangle.offsets[line]; i < tangle.offsets[line + 1]; i++) {
             const float *p = tangle.points + 3 * (size_t)i;
@@ -149,7 +149,7 @@ static void test_backing_off(void **state) {
     picture a, b;
     double first = 0;
     (void)state;
-    render_need(&gl);
+    render_need(gl);
     a = shoot(&tangle, &settings);
     b = shoot_at(&tangle, &settings, orthographic(900), SIZE);
     assert_true(mean_difference(&a, &b) < 1e-4);
@@ -199,7 +199,7 @@ static void test_roll(void **state) {
     static const int aligns[] = {LAO_ALIGN_ROTATION, LAO_ALIGN_NONE, LAO_ALIGN_PAPER};
     double differences[3];
     (void)state;
-    render_need(&gl);
+    render_need(gl);
     for (int i = 0; i < 3; i++) {
         lao_settings settings = plain(aligns[i]);
         picture a = shoot(&tangle, &settings);
@@ -226,7 +226,7 @@ static void test_roll(void **state) {
 /* The paper's alpha and the axial vector of the rolled picture, where both have one. */
 static void test_roll_of_directions(void **state) {
     (void)state;
-    render_need(&gl);
+    render_need(gl);
     for (int align = LAO_ALIGN_ROTATION; align <= LAO_ALIGN_PAPER; align++) {
         lao_settings settings = plain(align);
         render_shot shot;
@@ -239,9 +239,9 @@ static void test_roll_of_directions(void **state) {
         shot.lines[0] = &tangle;
         shot.settings[0] = &settings;
         shot.set_count = 1;
-        render_draw(&gl, &shot, &a);
+        render_draw(gl, &shot, &a);
         shot.camera = rolled();
-        render_draw(&gl, &shot, &b);
+        render_draw(gl, &shot, &b);
         axial_a = render_find(&a, "level", 0);
         axial_b = render_find(&b, "level", 0);
         color_a = render_find(&a, "color", 0);
@@ -278,7 +278,7 @@ static void test_alignment_only_takes_away(void **state) {
     lao_settings settings = plain(LAO_ALIGN_NONE);
     picture classic;
     (void)state;
-    render_need(&gl);
+    render_need(gl);
     classic = shoot(&tangle, &settings);
     for (int align = LAO_ALIGN_ROTATION; align <= LAO_ALIGN_PAPER; align++) {
         picture p;
@@ -301,7 +301,7 @@ static void test_monotone(void **state) {
     lao_settings settings = plain(LAO_ALIGN_ROTATION);
     picture last, p;
     (void)state;
-    render_need(&gl);
+    render_need(gl);
     for (int i = 0; i < 4; i++) {
         settings.density = densities[i];
         p = shoot(&tangle, &settings);
@@ -339,7 +339,7 @@ static void test_resolution(void **state) {
     picture a, b, c;
     double difference;
     (void)state;
-    render_need(&gl);
+    render_need(gl);
     a = shoot(&tangle, &settings);
     b = shoot_at(&tangle, &settings, orthographic(100), 2 * SIZE);
     c = coarser(&b, 2);
@@ -365,7 +365,7 @@ static void sheet(render_lines *lines, double x0, double x1, double y0, double y
 
 static void test_nothing_in_front(void **state) {
     (void)state;
-    render_need(&gl);
+    render_need(gl);
     for (int align = LAO_ALIGN_ROTATION; align <= LAO_ALIGN_NONE; align++) {
         lao_settings settings = plain(align);
         render_lines lines = {0};
@@ -398,14 +398,14 @@ static void test_levels_mask(void **state) {
     const render_image *color, *depth;
     uint32_t partly = 0;
     (void)state;
-    render_need(&gl);
+    render_need(gl);
     memset(&shot, 0, sizeof shot);
     shot.width = shot.height = SIZE - 1; /* the last texels hang over */
     shot.camera = orthographic(100);
     shot.lines[0] = &tangle;
     shot.settings[0] = &settings;
     shot.set_count = 1;
-    render_draw(&gl, &shot, &result);
+    render_draw(gl, &shot, &result);
     color = render_find(&result, "color", 0);
     depth = render_find(&result, "depth", 0);
     for (uint32_t level = 0; level < 3; level++) {
@@ -445,7 +445,7 @@ static void test_silhouettes(void **state) {
     picture p;
     double edge = 0, middle = 0;
     (void)state;
-    render_need(&gl);
+    render_need(gl);
     sheet(&lines, -20, 20, -10, 10, -3, 0);
     sheet(&lines, -8, 0, -23, 23, 3, 1);
     p = shoot(&lines, &settings);
@@ -473,7 +473,7 @@ static void test_printed_sum(void **state) {
     render_result result;
     float *ao, *base, *red;
     (void)state;
-    render_need(&gl);
+    render_need(gl);
     settings.strength = 3; /* levels */
     settings.ambient = 1;
     settings.set |= LAO_SET(diffuse) | LAO_SET(specular);
@@ -483,7 +483,7 @@ static void test_printed_sum(void **state) {
     shot.lines[0] = &tangle;
     shot.settings[0] = &settings;
     shot.set_count = 1;
-    render_draw(&gl, &shot, &result);
+    render_draw(gl, &shot, &result);
     ao = render_floats(render_find(&result, "ao", 0), 0);
     base = render_floats(render_find(&result, "color", 0), 0);
     red = render_floats(render_find(&result, "shaded", 0), 0);
@@ -504,7 +504,7 @@ static void test_factors_multiply(void **state) {
     picture p[5];
     uint32_t occluded = 0, partly = 0;
     (void)state;
-    render_need(&gl);
+    render_need(gl);
     for (int i = 0; i < 5; i++) {
         lao_settings settings = plain(LAO_ALIGN_ROTATION);
         settings.samples = settings.levels = 1;
@@ -524,17 +524,13 @@ static void test_factors_multiply(void **state) {
 }
 
 static int setup(void **state) {
-    (void)state;
     render_scatter(&tangle, 140, 7, 22, 18, 14);
-    render_open_gl(&gl, NULL);
-    return 0;
+    return render_open_opengl(state);
 }
 
 static int teardown(void **state) {
-    (void)state;
-    render_close(&gl);
     render_lines_free(&tangle);
-    return 0;
+    return render_close_both(state);
 }
 
 int main(void) {

@@ -8,7 +8,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-static render_device gl, vk;
+static render_device *const gl = &render_devices[RENDER_GL];
+static render_device *const vk = &render_devices[RENDER_VK];
 static render_lines board, few;
 /* Compiling the unrolled samples of the shipped number takes seconds for each variant, so only the
  * presets do; the rest takes the loop, or with the argument 32 the unrolled ones too. */
@@ -48,8 +49,8 @@ static void compare(const char *what, const render_shot *shot) {
     render_result a, b;
     uint32_t differing = 0, covered = 0;
     const render_image *color;
-    render_draw(&gl, shot, &a);
-    render_draw(&vk, shot, &b);
+    render_draw(gl, shot, &a);
+    render_draw(vk, shot, &b);
     assert_int_equal(a.count, b.count);
     for (uint32_t i = 0; i < a.count; i++) {
         const render_image *other = render_find(&b, a.images[i].name, a.images[i].level);
@@ -66,7 +67,7 @@ static void compare(const char *what, const render_shot *shot) {
         covered += color->data[4 * i + 3] != 0;
     assert_true(covered * 10 > color->width * color->height); /* there is something to compare */
     assert_true(memcmp(&a.frame, &b.frame, sizeof a.frame) == 0);
-    if (gl.software && vk.software)
+    if (gl->software && vk->software)
         assert_int_equal(differing, 0);
     else
         print_message("%s: %u texels differ on this driver\n", what, differing);
@@ -89,8 +90,8 @@ static void shoot(const char *what, int camera, const char *const *settings) {
 }
 
 static void both(void) {
-    render_need(&gl);
-    render_need(&vk);
+    render_need(gl);
+    render_need(vk);
 }
 
 /* ---------------------------------------------------------------------------------------- tests */
@@ -257,14 +258,14 @@ static void test_shared_occlusion(void **state) {
     part(&front, &board, 0, 90);
     part(&back, &board, 90, board.line_count);
     shot.sphere[3] = 20;
-    render_draw(&gl, &shot, &whole);
+    render_draw(gl, &shot, &whole);
     shot.lines[0] = &front;
     shot.lines[1] = &back;
     shot.set_count = 2;
-    render_draw(&gl, &shot, &apart);
+    render_draw(gl, &shot, &apart);
     assert_true(unlike("out", &whole, &apart) > 100);
     shot.frame_flags = LAO_FRAME_SHARED_OCCLUSION;
-    render_draw(&gl, &shot, &halves);
+    render_draw(gl, &shot, &halves);
     assert_int_equal(unlike("ao", &whole, &halves), 0);
     assert_int_equal(unlike("out", &whole, &halves), 0);
     compare("two sets that occlude each other", &shot);
@@ -324,24 +325,18 @@ static void test_host_depth(void **state) {
 }
 
 static int setup(void **state) {
-    (void)state;
     /* two layers of the board of degenerate lines, and lines in depth */
     render_scene(&board, "stress", 48, 0.28, -14, 8.4, 3);
     render_scene(&board, "helix", 20, 0.25, 0, 0, 0);
     render_scatter(&board, 120, 1, 9, 12, 9);
     render_scatter(&few, 30, 2, 15, 9, 9);
-    render_open_gl(&gl, NULL);
-    render_open_vk(&vk, 0);
-    return 0;
+    return render_open_both(state);
 }
 
 static int teardown(void **state) {
-    (void)state;
-    render_close(&gl);
-    render_close(&vk);
     render_lines_free(&board);
     render_lines_free(&few);
-    return 0;
+    return render_close_both(state);
 }
 
 int main(int argc, char **argv) {

@@ -7,7 +7,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-static render_device gl, vk;
+static render_device *const gl = &render_devices[RENDER_GL];
+static render_device *const vk = &render_devices[RENDER_VK];
 static render_lines board;
 
 static render_shot mixed(void) {
@@ -108,25 +109,25 @@ static void shoot(render_device *device, const char *what, const char *const *te
 static void test_default_gl(void **state) {
     static const char *const text[] = {NULL};
     (void)state;
-    shoot(&gl, "default", text);
+    shoot(gl, "default", text);
 }
 
 static void test_default_vk(void **state) {
     static const char *const text[] = {NULL};
     (void)state;
-    shoot(&vk, "default on Vulkan", text);
+    shoot(vk, "default on Vulkan", text);
 }
 
 static void test_classic(void **state) {
     static const char *const text[] = {"preset", "classic", NULL};
     (void)state;
-    shoot(&gl, "classic", text);
+    shoot(gl, "classic", text);
 }
 
 static void test_paper(void **state) {
     static const char *const text[] = {"preset", "paper", NULL};
     (void)state;
-    shoot(&gl, "paper", text);
+    shoot(gl, "paper", text);
 }
 
 /* Borders keep part of the light; tapered lines are occluded as wide ones. */
@@ -135,56 +136,56 @@ static void test_soft_trails(void **state) {
                                        "trail_length", "40",   "halo_width", "0.2",
                                        "samples",      "20",   NULL};
     (void)state;
-    shoot(&gl, "soft halos of trails", text);
+    shoot(gl, "soft halos of trails", text);
 }
 
 static void test_author_light(void **state) {
     static const char *const text[] = {"light",         "author", "samples", "12",
                                        "supersampling", "1",      NULL};
     (void)state;
-    shoot(&gl, "author", text);
+    shoot(gl, "author", text);
 }
 
 static void test_author_gaussian(void **state) {
     static const char *const text[] = {"light",   "author", "pyramid", "gaussian",
                                        "samples", "12",     NULL};
     (void)state;
-    shoot(&gl, "author, gaussian", text);
+    shoot(gl, "author, gaussian", text);
 }
 
 static void test_gaussian_paper(void **state) {
     static const char *const text[] = {"preset", "paper",  "pyramid", "gaussian", "samples",
                                        "9",      "levels", "4",       NULL};
     (void)state;
-    shoot(&gl, "gaussian, paper", text);
+    shoot(gl, "gaussian, paper", text);
 }
 
 static void test_strict_zero(void **state) {
     static const char *const text[] = {"strict_zero",    "on", "samples", "5", "depth_unit", "mm",
                                        "light_exponent", "7",  NULL};
     (void)state;
-    shoot(&gl, "strict zero, mm", text);
+    shoot(gl, "strict zero, mm", text);
 }
 
 static void test_smoothing(void **state) {
     static const char *const text[] = {"smoothing", "2", "samples", "5", NULL};
     (void)state;
-    shoot(&gl, "smoothing", text);
+    shoot(gl, "smoothing", text);
 }
 
 static void test_luminance_preserving(void **state) {
     static const char *const text[] = {
         "ao_affects_color", "luminance_preserving", "strength", "3", "samples", "9", NULL};
     (void)state;
-    shoot(&gl, "luminance preserving", text);
-    shoot(&vk, "luminance preserving on Vulkan", text);
+    shoot(gl, "luminance preserving", text);
+    shoot(vk, "luminance preserving on Vulkan", text);
 }
 
 static void test_no_occlusion(void **state) {
     static const char *const text[] = {"occlusion",     "off", "shininess", "3",
                                        "supersampling", "3",   NULL};
     (void)state;
-    shoot(&gl, "no occlusion", text);
+    shoot(gl, "no occlusion", text);
 }
 
 static void test_show(void **state) {
@@ -194,7 +195,7 @@ static void test_show(void **state) {
     (void)state;
     for (size_t i = 0; i < sizeof shows / sizeof *shows; i++) {
         const char *text[] = {"show", shows[i], "samples", "5", NULL};
-        shoot(&gl, shows[i], text);
+        shoot(gl, shows[i], text);
     }
 }
 
@@ -233,11 +234,11 @@ static void test_present(void **state) {
         for (uint32_t flags = 0; flags < 8; flags++) {
             if (flags & LAO_HOST_WRITABLE)
                 continue;
-            present(&gl, formats[f], flags, 1);
-            present(&gl, formats[f], flags, 0);
+            present(gl, formats[f], flags, 1);
+            present(gl, formats[f], flags, 0);
         }
     }
-    present(&vk, LAO_FORMAT_RGBA8, LAO_HOST_TOP_DOWN, 1);
+    present(vk, LAO_FORMAT_RGBA8, LAO_HOST_TOP_DOWN, 1);
 }
 
 /* Where nothing is drawn our depth is the host's; where something is, it is nearer; the host gets
@@ -257,10 +258,10 @@ static void host_depth(int reversed, uint32_t flags) {
     shot.host_depth = 1;
     shot.depth_flags = flags;
     shot.depth_value = reversed ? 0.1f : 0.85f;
-    render_draw(&gl, &shot, &result);
+    render_draw(gl, &shot, &result);
     c_inputs_find(&in, &result, &settings);
     image = c_export_depth(&in, &result.depth_before);
-    same(&gl, "export_depth", &image, &result.depth_after, 1e-6);
+    same(gl, "export_depth", &image, &result.depth_after, 1e-6);
     for (uint32_t i = 0; i < in.color->width * in.color->height; i++) {
         float z = ((const float *)(const void *)in.zbuffer->data)[i];
         if (in.color->data[4 * i + 3] == 0) {
@@ -278,28 +279,22 @@ static void host_depth(int reversed, uint32_t flags) {
 
 static void test_host_depth(void **state) {
     (void)state;
-    render_need(&gl);
+    render_need(gl);
     host_depth(0, 0);
     host_depth(1, 0);
     host_depth(0, LAO_HOST_TOP_DOWN);
 }
 
 static int setup(void **state) {
-    (void)state;
     render_scene(&board, "stress", 48, 0.28, -14, 8.4, 3);
     render_scene(&board, "helix", 20, 0.25, 0, 0, 0);
     render_scatter(&board, 120, 1, 9, 12, 9);
-    render_open_gl(&gl, NULL);
-    render_open_vk(&vk, 0);
-    return 0;
+    return render_open_both(state);
 }
 
 static int teardown(void **state) {
-    (void)state;
-    render_close(&gl);
-    render_close(&vk);
     render_lines_free(&board);
-    return 0;
+    return render_close_both(state);
 }
 
 int main(void) {

@@ -7,8 +7,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-static render_device devices[2]; /* OpenGL, Vulkan */
-
 enum { SIZE = 160 };
 
 /* A line along x with t = x + 80 ms, so that time runs with the pixels; grey. */
@@ -82,11 +80,11 @@ static void taper(render_device *device, double step, double time, double start,
 static void test_taper(void **state) {
     (void)state;
     for (int d = 0; d < 2; d++) {
-        render_need(&devices[d]);
-        taper(&devices[d], 0.5, 80, 1.0 / 3, 0.25);
-        taper(&devices[d], 0.5, 61.7, 0.25, 0.25);
-        taper(&devices[d], 0.5, 10.3, 0, 0.5);
-        taper(&devices[d], 0.5, 158, 0.9, 1);
+        render_need(&render_devices[d]);
+        taper(&render_devices[d], 0.5, 80, 1.0 / 3, 0.25);
+        taper(&render_devices[d], 0.5, 61.7, 0.25, 0.25);
+        taper(&render_devices[d], 0.5, 10.3, 0, 0.5);
+        taper(&render_devices[d], 0.5, 158, 0.9, 1);
     }
 }
 
@@ -94,7 +92,7 @@ static void test_taper(void **state) {
 static void test_tips(void **state) {
     (void)state;
     for (int i = 0; i < 40; i++) {
-        render_device *device = &devices[i & 1];
+        render_device *device = &render_devices[i & 1];
         render_lines lines = ruler(16, 0);
         lao_settings settings = plain(LAO_TRAIL_TAPER);
         double time = 50 + 1.3 * i, first = 1e9, last = -1e9;
@@ -117,7 +115,7 @@ static void test_tips(void **state) {
 static void test_opacity(void **state) {
     (void)state;
     for (int i = 0; i < 6; i++) {
-        render_device *device = &devices[i & 1];
+        render_device *device = &render_devices[i & 1];
         render_lines lines = ruler(1, 0);
         lao_settings settings = plain(LAO_TRAIL_OPACITY);
         render_result result;
@@ -147,7 +145,7 @@ static void test_opacity(void **state) {
 static void test_highlight(void **state) {
     (void)state;
     for (int i = 0; i < 6; i++) {
-        render_device *device = &devices[i & 1];
+        render_device *device = &render_devices[i & 1];
         render_lines lines = ruler(1, 0);
         lao_settings settings = plain(LAO_TRAIL_HIGHLIGHT);
         render_result result;
@@ -173,18 +171,14 @@ static void test_highlight(void **state) {
 
 static void same(const char *what, const render_result *a, const render_result *b) {
     assert_int_equal(a->count, b->count);
-    for (uint32_t k = 0; k < a->count; k++)
-        assert_int_equal(render_compare(what, &a->images[k],
-                                        render_find(b, a->images[k].name, a->images[k].level))
-                             .texels,
-                         0);
+    render_same_images(what, a, b);
 }
 
 /* Lines that run over the period's end, as of a looping heart beat. */
 static void test_period(void **state) {
     (void)state;
     for (int i = 0; i < 12; i++) {
-        render_device *device = &devices[i & 1];
+        render_device *device = &render_devices[i & 1];
         render_lines lines = ruler(1, 700.5); /* 700.5 .. 860.5, period 800 */
         lao_settings settings = plain(LAO_TRAIL_TAPER + i / 2 % 3);
         double time = (i < 6 ? 0 : 799.25);
@@ -219,16 +213,16 @@ static void test_none(void **state) {
         render_lines lines = ruler(1, 0);
         lao_settings settings = plain(LAO_TRAIL_NONE);
         render_result a, b;
-        render_need(&devices[d]);
-        a = drawn(&devices[d], &lines, &settings, 0);
+        render_need(&render_devices[d]);
+        a = drawn(&render_devices[d], &lines, &settings, 0);
         for (uint32_t i = 0; i < lines.point_count; i++)
             lines.times[i] = i % 3 ? (float)i : NAN;
-        b = drawn(&devices[d], &lines, &settings, 50);
+        b = drawn(&render_devices[d], &lines, &settings, 50);
         same("times without a trail", &a, &b);
         render_free(&b);
         /* a point without a time is never shown, and harms nobody */
         settings = plain(LAO_TRAIL_TAPER);
-        b = drawn(&devices[d], &lines, &settings, 50);
+        b = drawn(&render_devices[d], &lines, &settings, 50);
         for (int x = 0; x < SIZE; x++)
             assert_true(abs(x - 50) < 27 || !covered(&b, x, SIZE / 2));
         render_free(&a);
@@ -261,7 +255,7 @@ static render_lines timed(void) {
 static void test_order(void **state) {
     (void)state;
     for (int i = 0; i < 24; i++) {
-        render_device *device = &devices[i & 1];
+        render_device *device = &render_devices[i & 1];
         render_lines lines = timed();
         lao_settings settings = plain(i % 3 ? LAO_TRAIL_TAPER : LAO_TRAIL_OPACITY);
         double time = 67.3 * i;
@@ -289,20 +283,6 @@ static void test_order(void **state) {
     }
 }
 
-static int setup(void **state) {
-    (void)state;
-    render_open_gl(&devices[0], NULL);
-    render_open_vk(&devices[1], 0);
-    return 0;
-}
-
-static int teardown(void **state) {
-    (void)state;
-    render_close(&devices[0]);
-    render_close(&devices[1]);
-    return 0;
-}
-
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_taper),   cmocka_unit_test(test_tips),
@@ -310,5 +290,5 @@ int main(void) {
         cmocka_unit_test(test_period),  cmocka_unit_test(test_none),
         cmocka_unit_test(test_order),
     };
-    return cmocka_run_group_tests(tests, setup, teardown);
+    return cmocka_run_group_tests(tests, render_open_both, render_close_both);
 }

@@ -11,9 +11,6 @@
 
 enum { WIDTH = 90, HEIGHT = 66 };
 
-static render_device devices[2];
-static const lao_module *modules[1];
-
 /* ---------------------------------------------------------------------------------------------
  * surfaces */
 
@@ -144,16 +141,8 @@ static uint32_t byte_of(float v) {
 }
 
 static void draw_both(const scene *s, render_result results[2]) {
-    for (int i = 0; i < 2; i++) {
-        render_need(&devices[i]);
-        render_draw(&devices[i], &s->shot, &results[i]);
-    }
-    for (uint32_t i = 0; i < results[0].count; i++) {
-        const render_image *a = &results[0].images[i];
-        const render_image *b = render_find(&results[1], a->name, a->level);
-        assert_non_null(b);
-        assert_int_equal(render_compare(a->name, a, b).texels, 0);
-    }
+    render_draw_both(&s->shot, results);
+    render_same_images("GL, VK", &results[0], &results[1]);
 }
 
 static void free_both(render_result results[2]) {
@@ -959,22 +948,6 @@ static void among_lines(void **state) {
     subject_free(&torus);
 }
 
-static int open_all(void **state) {
-    (void)state;
-    modules[0] = vsf_module();
-    render_modules(modules, 1);
-    render_open_gl(&devices[0], NULL);
-    render_open_vk(&devices[1], 0);
-    return 0;
-}
-
-static int close_all(void **state) {
-    (void)state;
-    render_close(&devices[0]);
-    render_close(&devices[1]);
-    return 0;
-}
-
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(per_vertex_and_pixel),
@@ -987,5 +960,6 @@ int main(void) {
         cmocka_unit_test(layers_needed),
         cmocka_unit_test(among_lines),
     };
-    return cmocka_run_group_tests(tests, open_all, close_all);
+    render_module(vsf_module());
+    return cmocka_run_group_tests(tests, render_open_both, render_close_both);
 }

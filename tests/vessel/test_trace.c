@@ -137,6 +137,26 @@ static double union_distance(const sdv_grid *g, const double p[3], uint32_t *con
     }
     return least;
 }
+/* The same at t along a ray, for t that only grow: a distance changes by no more than the way, so a
+   cone whose last one leaves too much is not looked at again. */
+typedef struct along {
+    double at[MOST], distance[MOST]; /* where each cone was last looked at, and what it gave */
+} along;
+static double union_distance_along(const sdv_grid *g, const double p[3], double t, along *last,
+                                   uint32_t *cone) {
+    double least = 1e300;
+    for (uint32_t k = 0; k < g->cone_count; k++) {
+        if (last->distance[k] - 1.0001 * (t - last->at[k]) > least)
+            continue;
+        last->at[k] = t;
+        last->distance[k] = vessel_cone_distance(g->cones + 2 * k, p);
+        if (last->distance[k] < least) {
+            least = last->distance[k];
+            *cone = k;
+        }
+    }
+    return least;
+}
 typedef struct truth {
     double t, least, least_t; /* t < 0: no hit; least distance on the way */
     uint32_t cone;
@@ -144,10 +164,14 @@ typedef struct truth {
 static truth brute(const sdv_grid *g, lao_v3 o, lao_v3 v, double end) {
     truth r = {-1, 1e300, 0, 0};
     double t = 0, hit = 1e-7;
+    along last;
+    assert_in_range(g->cone_count, 1, MOST);
+    for (uint32_t k = 0; k < g->cone_count; k++)
+        last.at[k] = last.distance[k] = -1e300;
     while (t < end) {
         double p[3] = {(double)o.x + t * (double)v.x, (double)o.y + t * (double)v.y,
                        (double)o.z + t * (double)v.z};
-        double d = union_distance(g, p, &r.cone);
+        double d = union_distance_along(g, p, t, &last, &r.cone);
         if (d < r.least) {
             r.least = d;
             r.least_t = t;

@@ -8,9 +8,6 @@
 
 enum { MOST = 64 * 64 };
 
-static render_device devices[2];
-static const lao_module *modules[1];
-
 /* A few weighted pixels; kind 0: none. Weights that are no numbers or negative count as 0. */
 static void scatter(uint32_t kind, uint32_t count, float *texels) {
     uint32_t seed = 7 * kind + 1;
@@ -75,8 +72,8 @@ static void check(const sdv_pull_push_settings *s, uint32_t kind, uint32_t width
     for (int i = 0; i < 2; i++) {
         render_result result;
         const render_image *ours;
-        render_need(&devices[i]);
-        render_draw(&devices[i], &shot, &result);
+        render_need(&render_devices[i]);
+        render_draw(&render_devices[i], &shot, &result);
         ours = render_find(&result, "pull_push_filled", 0);
         assert_non_null(ours);
         assert_int_equal(ours->width * ours->height, width * height);
@@ -116,24 +113,9 @@ static void any_size_and_nothing(void **state) {
     check(&s, 0, 33, 20);
 }
 
-static int open_all(void **state) {
-    (void)state;
-    modules[0] = sdv_pull_push_module();
-    render_modules(modules, 1);
-    render_open_gl(&devices[0], NULL);
-    render_open_vk(&devices[1], 0);
-    return 0;
-}
-
-static int close_all(void **state) {
-    (void)state;
-    render_close(&devices[0]);
-    render_close(&devices[1]);
-    return 0;
-}
-
 int main(void) {
     const struct CMUnitTest tests[] = {cmocka_unit_test(as_in_c),
                                        cmocka_unit_test(any_size_and_nothing)};
-    return cmocka_run_group_tests(tests, open_all, close_all);
+    render_module(sdv_pull_push_module());
+    return cmocka_run_group_tests(tests, render_open_both, render_close_both);
 }

@@ -7,9 +7,6 @@
 
 enum { WIDTH = 64, HEIGHT = 48, IMAGE_SIZE = 16384 };
 
-static render_device devices[2];
-static const lao_module *modules[1];
-
 /* ---- trees -------------------------------------------------------------------------------- */
 
 static void tree_of(const float *balls, uint32_t nodes, const sdv_segment *segments, uint32_t count,
@@ -34,33 +31,16 @@ static void tree_of(const float *balls, uint32_t nodes, const sdv_segment *segme
 
 /* ---- what is drawn ------------------------------------------------------------------------ */
 
-typedef struct scene {
-    render_shot shot;
-    lao_settings lines;
-    sdv_settings vessel;
-    const void *settings[1];
-} scene;
-
-static void scene_make(scene *s, const lao_object_desc *object) {
-    float size = 1;
-    memset(s, 0, sizeof *s);
+/* From three times the object's size. */
+static void far_make(scene *s, const lao_object_desc *object) {
+    double size = 1;
     for (int k = 0; k < 3; k++) {
-        size = fmaxf(size, fabsf(object->bounds[0][k]));
-        size = fmaxf(size, fabsf(object->bounds[1][k]));
+        size = fmax(size, fabs((double)object->bounds[0][k]));
+        size = fmax(size, fabs((double)object->bounds[1][k]));
     }
-    s->shot.width = WIDTH;
-    s->shot.height = HEIGHT;
-    s->shot.set_count = 1;
-    s->shot.settings[0] = &s->lines;
-    s->shot.objects[0] = object;
-    s->settings[0] = &s->vessel;
-    s->shot.module_settings[0] = s->settings;
-    s->shot.background[3] = 1;
-    s->lines.set = LAO_SET(occlusion);
-    s->lines.supersampling = 1;
-    s->shot.camera = render_camera(0.3, 0.5, 0.8, 3 * (double)size);
-    render_perspective(&s->shot.camera, 40, (double)WIDTH / HEIGHT, 0.1 * (double)size,
-                       9 * (double)size);
+    scene_make(s, object, WIDTH, HEIGHT);
+    s->shot.camera = render_camera(0.3, 0.5, 0.8, 3 * size);
+    render_perspective(&s->shot.camera, 40, (double)WIDTH / HEIGHT, 0.1 * size, 9 * size);
 }
 
 static float value_of(const render_image *image, uint32_t channels, size_t item, uint32_t channel) {
@@ -127,12 +107,12 @@ static void check_tree(const sdv_tree *tree, uint32_t resolution, const sdv_shap
         assert_int_equal(sdv_object_shapes(NULL, shapes, NULL, &device), LAO_OK);
     }
     for (int i = 0; i < 2; i++) {
-        render_need(&devices[i]);
-        scene_make(&s, &cpu.desc);
+        render_need(&render_devices[i]);
+        far_make(&s, &cpu.desc);
         s.vessel = settings ? *settings : s.vessel;
-        render_draw(&devices[i], &s.shot, &of_cpu[i]);
+        render_draw(&render_devices[i], &s.shot, &of_cpu[i]);
         s.shot.objects[0] = &device.desc;
-        render_draw(&devices[i], &s.shot, &of_device[i]);
+        render_draw(&render_devices[i], &s.shot, &of_device[i]);
         assert_null(render_find(&of_cpu[i], "vessel_grid", 0));
         check_field(&of_device[i], &grid);
         same_pictures(&of_cpu[i], &of_device[i]);
@@ -234,9 +214,9 @@ static void moving(void **state) {
         memcpy(box.size, object.grid.size, sizeof box.size);
         assert_int_equal(sdv_grid_build(NULL, &s.tree, &box, &grid), LAO_OK);
         for (int i = 0; i < 2; i++) {
-            render_need(&devices[i]);
-            scene_make(&s_now, &object.desc);
-            render_draw(&devices[i], &s_now.shot, &result);
+            render_need(&render_devices[i]);
+            far_make(&s_now, &object.desc);
+            render_draw(&render_devices[i], &s_now.shot, &result);
             check_field(&result, &grid);
             render_free(&result);
         }
@@ -264,8 +244,8 @@ static void several_sets(void **state) {
     assert_int_equal(sdv_object_make_tree(NULL, &a.tree, &desc, IMAGE_SIZE, a.colors, &device),
                      LAO_OK);
     for (int i = 0; i < 2; i++) {
-        render_need(&devices[i]);
-        scene_make(&s, &a.object.desc);
+        render_need(&render_devices[i]);
+        far_make(&s, &a.object.desc);
         s.shot.set_count = 3;
         s.shot.objects[1] = &b.object.desc;
         s.shot.lines[2] = &lines;
@@ -273,9 +253,9 @@ static void several_sets(void **state) {
             s.shot.settings[k] = &s.lines;
             s.shot.module_settings[k] = s.settings;
         }
-        render_draw(&devices[i], &s.shot, &plain);
+        render_draw(&render_devices[i], &s.shot, &plain);
         s.shot.objects[0] = &device.desc;
-        render_draw(&devices[i], &s.shot, &results[i]);
+        render_draw(&render_devices[i], &s.shot, &results[i]);
         assert_int_equal(
             render_compare("out", render_find(&plain, "out", 0), render_find(&results[i], "out", 0))
                 .texels,
@@ -291,27 +271,12 @@ static void several_sets(void **state) {
     subject_free(&b);
 }
 
-static int open_all(void **state) {
-    (void)state;
-    modules[0] = sdv_module();
-    render_modules(modules, 1);
-    render_open_gl(&devices[0], NULL);
-    render_open_vk(&devices[1], 0);
-    return 0;
-}
-
-static int close_all(void **state) {
-    (void)state;
-    render_close(&devices[0]);
-    render_close(&devices[1]);
-    return 0;
-}
-
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(trees_built_to_hurt),  cmocka_unit_test(degenerate_trees),
         cmocka_unit_test(all_that_reads_lists), cmocka_unit_test(moving),
         cmocka_unit_test(several_sets),
     };
-    return cmocka_run_group_tests(tests, open_all, close_all);
+    render_module(sdv_module());
+    return cmocka_run_group_tests(tests, render_open_both, render_close_both);
 }

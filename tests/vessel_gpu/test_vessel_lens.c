@@ -11,21 +11,17 @@
 
 enum { WIDTH = 64, HEIGHT = 48 };
 
-static render_device devices[2];
-static const lao_module *modules[1];
-
-typedef struct scene {
+typedef struct lens_scene {
     render_shot shot;
     lao_settings lines;
     sdv_settings vessels[2]; /* outside, inside */
     const void *settings[2][1];
-} scene;
+} lens_scene;
 
-static void scene_make(scene *s, const sdv_object *outside, const sdv_object *inside) {
+static void lens_make(lens_scene *s, const sdv_object *outside, const sdv_object *inside) {
     const sdv_object *objects[2] = {outside, inside};
     memset(s, 0, sizeof *s);
-    s->shot.width = WIDTH;
-    s->shot.height = HEIGHT;
+    shot_make(&s->shot, &s->lines, WIDTH, HEIGHT);
     s->shot.set_count = 2;
     for (int i = 0; i < 2; i++) {
         s->shot.settings[i] = &s->lines;
@@ -33,27 +29,16 @@ static void scene_make(scene *s, const sdv_object *outside, const sdv_object *in
         s->settings[i][0] = &s->vessels[i];
         s->shot.module_settings[i] = s->settings[i];
     }
-    s->shot.background[3] = 1;
     s->shot.sphere[3] = 40; /* the same for one set as for two */
-    s->lines.set = LAO_SET(occlusion);
-    s->lines.supersampling = 1;
-    s->shot.camera = render_camera(0.3, 0.5, 0.8, 45);
-    render_perspective(&s->shot.camera, 40, (double)WIDTH / HEIGHT, 1, 200);
 }
 
 /* One of the sets alone. */
-static render_shot alone(const scene *s, int set) {
+static render_shot alone(const lens_scene *s, int set) {
     render_shot shot = s->shot;
     shot.set_count = 1;
     shot.objects[0] = s->shot.objects[set];
     shot.module_settings[0] = s->shot.module_settings[set];
     return shot;
-}
-
-static void same_image(const char *name, const render_result *a, const render_result *b) {
-    const render_image *x = render_find(a, name, 0), *y = render_find(b, name, 0);
-    assert_true(x && y);
-    assert_int_equal(render_compare(name, x, y).texels, 0);
 }
 
 static const uint8_t *pixel_of(const render_result *result, uint32_t i) {
@@ -80,23 +65,23 @@ static double radii(uint32_t i) {
 }
 
 /* `rays`: what is hidden is not traced either. */
-static void check_circle(scene *s, float rim, bool rays) {
+static void check_circle(lens_scene *s, float rim, bool rays) {
     render_result plain[2], lens[2];
     uint32_t differ = 0, ring = 0;
     for (int i = 0; i < 2; i++) {
-        render_need(&devices[i]);
+        render_need(&render_devices[i]);
         set_lens(&s->vessels[0], SDV_LENS_NONE, rim);
         set_lens(&s->vessels[1], SDV_LENS_NONE, rim);
         for (int k = 0; k < 2 && i == 0; k++) {
             render_shot shot = alone(s, k);
-            render_draw(&devices[i], &shot, &plain[k]);
+            render_draw(&render_devices[i], &shot, &plain[k]);
         }
         set_lens(&s->vessels[0], SDV_LENS_OUTSIDE, rim);
         set_lens(&s->vessels[1], SDV_LENS_INSIDE, rim);
-        render_draw(&devices[i], &s->shot, &lens[i]);
+        render_draw(&render_devices[i], &s->shot, &lens[i]);
     }
-    same_image("shaded", &lens[0], &lens[1]);
-    same_image("zbuffer", &lens[0], &lens[1]);
+    render_same_image("shaded", &lens[0], &lens[1]);
+    render_same_image("zbuffer", &lens[0], &lens[1]);
     for (uint32_t i = 0; i < WIDTH * HEIGHT; i++) {
         bool inside = radii(i) <= 1, rings = inside && radii(i) > 1 - (double)rim / (0.3 * HEIGHT);
         const uint8_t *p = pixel_of(&lens[0], i), *q = pixel_of(&plain[inside], i);
@@ -126,11 +111,11 @@ static void check_circle(scene *s, float rim, bool rays) {
 
 static void circle(void **state) {
     subject a, b;
-    scene s;
+    lens_scene s;
     (void)state;
     subject_make(&a, 60, 1);
     subject_make(&b, 60, 9);
-    scene_make(&s, &a.object, &b.object);
+    lens_make(&s, &a.object, &b.object);
     check_circle(&s, 0, true);
     s.vessels[1].near_miss = SDV_NEAR_MISS_EXACT;
     check_circle(&s, 2, true);
@@ -143,7 +128,7 @@ static void circle_of_cut_trees(void **state) {
     const sdv_shapes shapes = {&ball, 1, NULL, 0};
     subject a;
     sdv_object cut;
-    scene s;
+    lens_scene s;
     (void)state;
     memset(&ball, 0, sizeof ball);
     ball.kind = SDV_SHAPE_BALL;
@@ -152,9 +137,9 @@ static void circle_of_cut_trees(void **state) {
     subject_make(&a, 60, 1);
     assert_int_equal(sdv_object_make(NULL, &a.grid, a.colors, &cut), LAO_OK);
     assert_int_equal(sdv_object_shapes(NULL, &shapes, NULL, &cut), LAO_OK);
-    scene_make(&s, &a.object, &cut);
+    lens_make(&s, &a.object, &cut);
     check_circle(&s, 0, true);
-    scene_make(&s, &cut, &a.object);
+    lens_make(&s, &cut, &a.object);
     check_circle(&s, 0, true);
     sdv_object_free(&cut);
     subject_free(&a);
@@ -163,10 +148,10 @@ static void circle_of_cut_trees(void **state) {
 /* The void is filled from the whole picture, so that its ink is what it is without a lens. */
 static void circle_in_ink(void **state) {
     subject a;
-    scene s;
+    lens_scene s;
     (void)state;
     subject_make(&a, 60, 1);
-    scene_make(&s, &a.object, &a.object);
+    lens_make(&s, &a.object, &a.object);
     for (int i = 0; i < 2; i++) {
         s.vessels[i].parameterization = 2;
         s.vessels[i].ssp_period = 1.5f;
@@ -184,7 +169,7 @@ static void circle_of_a_mesh(void **state) {
     sdv_mesh_desc desc;
     sdv_object mesh;
     subject a;
-    scene s;
+    lens_scene s;
     (void)state;
     memset(&desc, 0, sizeof desc);
     desc.vertex_count = 4;
@@ -193,7 +178,7 @@ static void circle_of_a_mesh(void **state) {
     desc.triangles = triangles;
     subject_make(&a, 60, 1);
     assert_int_equal(sdv_object_mesh(NULL, &desc, &mesh), LAO_OK);
-    scene_make(&s, &a.object, &mesh);
+    lens_make(&s, &a.object, &mesh);
     check_circle(&s, 0, false);
     sdv_object_free(&mesh);
     subject_free(&a);
@@ -204,7 +189,7 @@ static void circle_of_a_mesh(void **state) {
 static void ball(void **state) {
     const lao_v4 middle = lao_v4_make(1, 2, -1, 8);
     subject a;
-    scene s;
+    lens_scene s;
     sdv_shape balls[2];
     sdv_object parts[2];
     render_result results[2];
@@ -225,7 +210,7 @@ static void ball(void **state) {
         assert_int_equal(sdv_object_make(NULL, &a.grid, own, &parts[i]), LAO_OK);
         assert_int_equal(sdv_object_shapes(NULL, &shapes, NULL, &parts[i]), LAO_OK);
     }
-    scene_make(&s, &parts[0], &parts[1]);
+    lens_make(&s, &parts[0], &parts[1]);
     for (int i = 0; i < 2; i++) { /* colours alone */
         s.vessels[i].near_miss = SDV_NEAR_MISS_NONE;
         s.vessels[i].surface_ambient = 1;
@@ -233,12 +218,9 @@ static void ball(void **state) {
                            SDV_SET(surface_diffuse) | SDV_SET(surface_specular) |
                            SDV_SET(field_occlusion);
     }
-    for (int i = 0; i < 2; i++) {
-        render_need(&devices[i]);
-        render_draw(&devices[i], &s.shot, &results[i]);
-    }
-    same_image("shaded", &results[0], &results[1]);
-    same_image("zbuffer", &results[0], &results[1]);
+    render_draw_both(&s.shot, results);
+    render_same_image("shaded", &results[0], &results[1]);
+    render_same_image("zbuffer", &results[0], &results[1]);
     for (uint32_t i = 0; i < WIDTH * HEIGHT; i++) {
         const lao_frame_uniforms *frame = &results[0].frame;
         const uint8_t *p = pixel_of(&results[0], i);
@@ -272,29 +254,14 @@ static void ball(void **state) {
     subject_free(&a);
 }
 
-static int open_all(void **state) {
-    (void)state;
-    modules[0] = sdv_module();
-    render_modules(modules, 1);
-    render_open_gl(&devices[0], NULL);
-    render_open_vk(&devices[1], 0);
-    return 0;
-}
-
-static int close_all(void **state) {
-    (void)state;
-    render_close(&devices[0]);
-    render_close(&devices[1]);
-    return 0;
-}
-
 int main(int count, char **arguments) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(circle),        cmocka_unit_test(circle_of_cut_trees),
         cmocka_unit_test(circle_in_ink), cmocka_unit_test(circle_of_a_mesh),
         cmocka_unit_test(ball),
     };
+    render_module(sdv_module());
     if (count > 1)
         cmocka_set_test_filter(arguments[1]);
-    return cmocka_run_group_tests(tests, open_all, close_all);
+    return cmocka_run_group_tests(tests, render_open_both, render_close_both);
 }

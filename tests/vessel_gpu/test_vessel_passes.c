@@ -11,34 +11,8 @@
 
 enum { WIDTH = 96, HEIGHT = 72 };
 
-static render_device devices[2];
-static const lao_module *modules[1];
-
 /* ---------------------------------------------------------------------------------------------
  * a shot of it */
-
-typedef struct scene {
-    render_shot shot;
-    lao_settings lines;
-    sdv_settings vessel;
-    const void *settings[1];
-} scene;
-
-static void scene_make(scene *s, const subject *tree) {
-    memset(s, 0, sizeof *s);
-    s->shot.width = WIDTH;
-    s->shot.height = HEIGHT;
-    s->shot.set_count = 1;
-    s->shot.settings[0] = &s->lines;
-    s->shot.objects[0] = &tree->object.desc;
-    s->settings[0] = &s->vessel;
-    s->shot.module_settings[0] = s->settings;
-    s->shot.background[3] = 1;
-    s->lines.set = LAO_SET(occlusion);
-    s->lines.supersampling = 1;
-    s->shot.camera = render_camera(0.3, 0.5, 0.8, 45);
-    render_perspective(&s->shot.camera, 40, (double)WIDTH / HEIGHT, 1, 200);
-}
 
 static lao_v4 texel_of(const render_image *image, uint32_t x, uint32_t y) {
     lao_v4 v;
@@ -211,24 +185,18 @@ static void check_shade(const scene *s, const subject *tree, const solid *of,
     assert_in_range(all, 300, WIDTH * HEIGHT);
 }
 
-static void same_image(const char *name, const render_result *a, const render_result *b) {
-    const render_image *x = render_find(a, name, 0), *y = render_find(b, name, 0);
-    assert_true(x && y);
-    assert_int_equal(render_compare(name, x, y).texels, 0);
-}
-
 /* Draws on both, compares with C and with each other. */
 static void check(scene *s, const subject *tree, uint32_t least_hits) {
     render_result results[2];
     for (int i = 0; i < 2; i++) {
-        render_need(&devices[i]);
-        render_draw(&devices[i], &s->shot, &results[i]);
+        render_need(&render_devices[i]);
+        render_draw(&render_devices[i], &s->shot, &results[i]);
         assert_in_range(check_trace(s, tree, &results[i]), least_hits, WIDTH * HEIGHT);
         check_shade(s, tree, NULL, &results[i]);
     }
-    same_image("zbuffer", &results[0], &results[1]);
-    same_image("shaded", &results[0], &results[1]);
-    same_image("out", &results[0], &results[1]);
+    render_same_image("zbuffer", &results[0], &results[1]);
+    render_same_image("shaded", &results[0], &results[1]);
+    render_same_image("out", &results[0], &results[1]);
     render_free(&results[0]);
     render_free(&results[1]);
 }
@@ -240,7 +208,7 @@ static void perspective(void **state) {
     scene s;
     (void)state;
     subject_make(&tree, 60, 1);
-    scene_make(&s, &tree);
+    scene_make(&s, &tree.object.desc, WIDTH, HEIGHT);
     check(&s, &tree, 300);
     s.vessel.near_miss = SDV_NEAR_MISS_EXACT;
     check(&s, &tree, 300);
@@ -258,7 +226,7 @@ static void orthographic(void **state) {
     scene s;
     (void)state;
     subject_make(&tree, 90, 2);
-    scene_make(&s, &tree);
+    scene_make(&s, &tree.object.desc, WIDTH, HEIGHT);
     render_orthographic(&s.shot.camera, 30, (double)WIDTH / HEIGHT, 1, 200);
     render_reverse(&s.shot.camera);
     check(&s, &tree, 300);
@@ -271,7 +239,7 @@ static void from_within(void **state) {
     scene s;
     (void)state;
     subject_make(&tree, 60, 3);
-    scene_make(&s, &tree);
+    scene_make(&s, &tree.object.desc, WIDTH, HEIGHT);
     s.shot.camera = render_camera(1, 0, 0, 6);
     render_perspective(&s.shot.camera, 60, (double)WIDTH / HEIGHT, 0.01, 100);
     check(&s, &tree, 300);
@@ -288,7 +256,7 @@ static void forms(void **state) {
     (void)state;
     subject_make(&tree, 60, 1);
     subject_form(&tree, 7);
-    scene_make(&s, &tree);
+    scene_make(&s, &tree.object.desc, WIDTH, HEIGHT);
     s.vessel.field_shadow = 1;
     check(&s, &tree, 300);
     s.vessel.near_miss = SDV_NEAR_MISS_EXACT;
@@ -374,7 +342,7 @@ static void with_shapes(void **state) {
         render_result results[2];
         if (count == SHAPES) /* the last time with forms */
             subject_form(&tree, 7);
-        scene_make(&s, &tree);
+        scene_make(&s, &tree.object.desc, WIDTH, HEIGHT);
         carving_make(&c, count);
         s.vessel.near_miss = (float)(count % 3);
         const float colors[3 * SHAPES] = {-1, 0, 0, 0.9f, 0.5f, 0.1f, -1, 0, 0,
@@ -384,14 +352,14 @@ static void with_shapes(void **state) {
         s.vessel.field_shadow = count > 2 ? 1.0f : 0.0f;
         for (int i = 0; i < 2; i++) {
             uint32_t cut = 0;
-            render_need(&devices[i]);
-            render_draw(&devices[i], &s.shot, &results[i]);
+            render_need(&render_devices[i]);
+            render_draw(&render_devices[i], &s.shot, &results[i]);
             assert_in_range(check_carved(&s, &tree, &c, &results[i], &cut), 200, WIDTH * HEIGHT);
             assert_in_range(cut, 10, WIDTH * HEIGHT);
             check_shade(&s, &tree, &seen, &results[i]);
         }
-        same_image("zbuffer", &results[0], &results[1]);
-        same_image("out", &results[0], &results[1]);
+        render_same_image("zbuffer", &results[0], &results[1]);
+        render_same_image("out", &results[0], &results[1]);
         render_free(&results[0]);
         render_free(&results[1]);
     }
@@ -427,7 +395,7 @@ static void layouts(void **state) {
             flat.colors[4 * i + 3] = 255;
         }
         assert_int_equal(sdv_object_make(NULL, &flat.grid, flat.colors, &flat.object), LAO_OK);
-        scene_make(&s, &flat);
+        scene_make(&s, &flat.object.desc, WIDTH, HEIGHT);
         memset(&s.shot.camera, 0, sizeof s.shot.camera);
         for (int k = 0; k < 16; k += 5)
             s.shot.camera.view[k] = 1;
@@ -452,7 +420,7 @@ static void among_lines(void **state) {
     (void)state;
     memset(&lines, 0, sizeof lines);
     subject_make(&tree, 60, 1);
-    scene_make(&s, &tree);
+    scene_make(&s, &tree.object.desc, WIDTH, HEIGHT);
     render_scatter(&lines, 40, 5, 30, 8, 8);
     for (int order = 0; order < 2; order++) {
         s.shot.set_count = 2;
@@ -462,35 +430,16 @@ static void among_lines(void **state) {
         s.shot.objects[1 - order] = &tree.object.desc;
         s.shot.settings[0] = s.shot.settings[1] = &s.lines;
         s.shot.module_settings[0] = s.shot.module_settings[1] = s.settings;
-        for (int i = 0; i < 2; i++) {
-            render_need(&devices[i]);
-            render_draw(&devices[i], &s.shot, &results[order][i]);
-        }
-        same_image("out", &results[order][0], &results[order][1]);
+        render_draw_both(&s.shot, results[order]);
+        render_same_image("out", &results[order][0], &results[order][1]);
     }
-    same_image("zbuffer", &results[0][0], &results[1][0]);
-    same_image("out", &results[0][0], &results[1][0]);
+    render_same_image("zbuffer", &results[0][0], &results[1][0]);
+    render_same_image("out", &results[0][0], &results[1][0]);
     for (int i = 0; i < 4; i++) {
         render_free(&results[i / 2][i % 2]);
     }
     render_lines_free(&lines);
     subject_free(&tree);
-}
-
-static int open_all(void **state) {
-    (void)state;
-    modules[0] = sdv_module();
-    render_modules(modules, 1);
-    render_open_gl(&devices[0], NULL);
-    render_open_vk(&devices[1], 0);
-    return 0;
-}
-
-static int close_all(void **state) {
-    (void)state;
-    render_close(&devices[0]);
-    render_close(&devices[1]);
-    return 0;
 }
 
 int main(void) {
@@ -500,5 +449,6 @@ int main(void) {
         cmocka_unit_test(layouts),     cmocka_unit_test(among_lines),
         cmocka_unit_test(forms),
     };
-    return cmocka_run_group_tests(tests, open_all, close_all);
+    render_module(sdv_module());
+    return cmocka_run_group_tests(tests, render_open_both, render_close_both);
 }

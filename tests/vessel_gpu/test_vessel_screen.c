@@ -11,34 +11,12 @@
 
 enum { WIDTH = 49, HEIGHT = 35 }; /* odd, so that no level halves evenly */
 
-static render_device devices[2];
-static const lao_module *modules[1];
-
-typedef struct scene {
-    render_shot shot;
-    lao_settings lines;
-    sdv_settings vessel;
-    const void *settings[1];
-} scene;
-
-static void scene_make(scene *s, const subject *tree) {
-    memset(s, 0, sizeof *s);
-    s->shot.width = WIDTH;
-    s->shot.height = HEIGHT;
-    s->shot.set_count = 1;
-    s->shot.settings[0] = &s->lines;
-    s->shot.objects[0] = tree ? &tree->object.desc : NULL;
-    s->settings[0] = &s->vessel;
-    s->shot.module_settings[0] = s->settings;
-    s->shot.background[3] = 1;
-    s->lines.set = LAO_SET(occlusion);
-    s->lines.supersampling = 1;
+static void frame_make(scene *s, const subject *tree) {
+    scene_make(s, tree ? &tree->object.desc : NULL, WIDTH, HEIGHT);
     s->vessel.parameterization = 2;
     s->vessel.ssp_period = 1.5f;
     /* light of the ink is the surface's alone */
     s->vessel.set = SDV_SET(field_occlusion) | SDV_SET(joint_smoothness);
-    s->shot.camera = render_camera(0.3, 0.5, 0.8, 45);
-    render_perspective(&s->shot.camera, 40, (double)WIDTH / HEIGHT, 1, 200);
 }
 
 static const lao_v4 *texels_of(const render_result *result, const char *name, uint32_t level) {
@@ -134,12 +112,6 @@ static void check_frame(const scene *s, const render_result *result, screen *c) 
     memcpy(c->ink_before, c->ink, n * sizeof(lao_v4));
 }
 
-static void same_image(const char *name, const render_result *a, const render_result *b) {
-    const render_image *x = render_find(a, name, 0), *y = render_find(b, name, 0);
-    assert_true(x && y);
-    assert_int_equal(render_compare(name, x, y).texels, 0);
-}
-
 /* Frames of these cameras on both devices; `last` holds the last one afterwards. */
 static void check_in(scene *s, const lao_camera *cameras, uint32_t count, screen *last,
                      lao_view views[2]) {
@@ -147,15 +119,15 @@ static void check_in(scene *s, const lao_camera *cameras, uint32_t count, screen
         render_result results[2];
         s->shot.camera = cameras[frame];
         for (int i = 0; i < 2; i++) {
-            render_need(&devices[i]);
+            render_need(&render_devices[i]);
             s->shot.view = &views[i];
-            render_draw(&devices[i], &s->shot, &results[i]);
+            render_draw(&render_devices[i], &s->shot, &results[i]);
         }
-        same_image("shaded", &results[0], &results[1]);
-        same_image("zbuffer", &results[0], &results[1]);
-        same_image("vessel_surface", &results[0], &results[1]);
+        render_same_image("shaded", &results[0], &results[1]);
+        render_same_image("zbuffer", &results[0], &results[1]);
+        render_same_image("vessel_surface", &results[0], &results[1]);
         if (s->vessel.parameterization > 1)
-            same_image("vessel_uv", &results[0], &results[1]);
+            render_same_image("vessel_uv", &results[0], &results[1]);
         check_frame(s, &results[0], last);
         render_free(&results[0]);
         render_free(&results[1]);
@@ -182,7 +154,7 @@ static void still_frames(void **state) {
     (void)state;
     subject_make(&tree, 60, 1);
     for (int kind = 0; kind < 5; kind++) {
-        scene_make(&s, &tree);
+        frame_make(&s, &tree);
         if (kind == 1) {
             s.vessel.guide = SDV_GUIDE_OWN;
             s.vessel.set |= SDV_SET(guide_threshold); /* 0: every slope is a contour */
@@ -220,7 +192,7 @@ static void empty_picture(void **state) {
     lao_camera away[2];
     (void)state;
     subject_make(&tree, 60, 1);
-    scene_make(&s, &tree);
+    frame_make(&s, &tree);
     away[0] = s.shot.camera;
     render_shift(&away[0], 30, 0);
     away[1] = s.shot.camera;
@@ -249,7 +221,7 @@ static void frames_of(int converge) {
     lao_view views[2] = {{0}, {0}};
     assert_non_null(before);
     subject_make(&tree, 60, 1);
-    scene_make(&s, &tree);
+    frame_make(&s, &tree);
     for (int i = 0; i < 4; i++) {
         double angle = 0.02 * (i < 2 ? i : 2);
         cameras[i] = render_camera(0.3 + angle, 0.5, 0.8 - angle, 45);
@@ -338,7 +310,7 @@ static void surfaces(void **state) {
     sdv_object drawn;
     (void)state;
     bump_make(&b);
-    scene_make(&s, NULL);
+    frame_make(&s, NULL);
     s.shot.objects[0] = &b.object.desc;
     s.vessel.guide = SDV_GUIDE_OWN;
     s.vessel.style = SDV_STYLE_PATTERN;
@@ -350,10 +322,10 @@ static void surfaces(void **state) {
         render_image imports[4];
         uint32_t covered = 0;
         screen c;
-        render_need(&devices[i]);
+        render_need(&render_devices[i]);
         s.shot.objects[0] = &b.object.desc;
         s.shot.import_count = 0;
-        render_draw(&devices[i], &s.shot, &mesh);
+        render_draw(&render_devices[i], &s.shot, &mesh);
         screen_of(&s, NULL, &c);
         c.pattern = b.object.pattern;
         c.directions = texels_of(&mesh, "vessel_direction", 0);
@@ -366,10 +338,10 @@ static void surfaces(void **state) {
         s.shot.objects[0] = &drawn.desc;
         s.shot.imports = imports;
         s.shot.import_count = 4;
-        render_draw(&devices[i], &s.shot, &again);
-        same_image("vessel_uv", &mesh, &again);
-        same_image("vessel_ink", &mesh, &again);
-        same_image("shaded", &mesh, &again);
+        render_draw(&render_devices[i], &s.shot, &again);
+        render_same_image("vessel_uv", &mesh, &again);
+        render_same_image("vessel_ink", &mesh, &again);
+        render_same_image("shaded", &mesh, &again);
         screen_free(&c);
         render_free(&mesh);
         render_free(&again);
@@ -391,7 +363,7 @@ static void depth_alone(void **state) {
     assert_int_equal(sdv_object_drawn(NULL, b.object.desc.bounds[0], &drawn), LAO_OK);
     for (int reverse = 0; reverse < 2; reverse++) {
         render_result results[2];
-        scene_make(&s, NULL);
+        frame_make(&s, NULL);
         s.vessel.style = SDV_STYLE_HATCH;
         s.vessel.void_style = SDV_VOID_STIPPLE;
         if (reverse)
@@ -401,17 +373,17 @@ static void depth_alone(void **state) {
             render_image depth;
             uint32_t covered = 0, alike = 0;
             screen c;
-            render_need(&devices[i]);
+            render_need(&render_devices[i]);
             s.shot.objects[0] = &b.object.desc;
             s.shot.import_count = 0;
-            render_draw(&devices[i], &s.shot, &mesh);
+            render_draw(&render_devices[i], &s.shot, &mesh);
             depth = *render_find(&mesh, "vessel_z", 0);
             assert_int_equal(depth.format, LAO_FORMAT_D32F);
             depth.name = "vessel_drawn_depth";
             s.shot.objects[0] = &drawn.desc;
             s.shot.imports = &depth;
             s.shot.import_count = 1;
-            render_draw(&devices[i], &s.shot, &results[i]);
+            render_draw(&render_devices[i], &s.shot, &results[i]);
             screen_of(&s, NULL, &c);
             c.frame = results[i].frame;
             c.directions = position; /* not a tree */
@@ -436,8 +408,8 @@ static void depth_alone(void **state) {
             screen_free(&c);
             render_free(&mesh);
         }
-        same_image("shaded", &results[0], &results[1]);
-        same_image("zbuffer", &results[0], &results[1]);
+        render_same_image("shaded", &results[0], &results[1]);
+        render_same_image("zbuffer", &results[0], &results[1]);
         render_free(&results[0]);
         render_free(&results[1]);
     }
@@ -454,7 +426,7 @@ static void two_trees(void **state) {
     (void)state;
     subject_make(&a, 60, 1);
     subject_make(&b, 60, 9);
-    scene_make(&s, &a);
+    frame_make(&s, &a);
     s.shot.set_count = 2;
     s.shot.objects[1] = &b.object.desc;
     s.shot.settings[1] = &s.lines;
@@ -473,22 +445,6 @@ static void two_trees(void **state) {
     subject_free(&b);
 }
 
-static int open_all(void **state) {
-    (void)state;
-    modules[0] = sdv_module();
-    render_modules(modules, 1);
-    render_open_gl(&devices[0], NULL);
-    render_open_vk(&devices[1], 0);
-    return 0;
-}
-
-static int close_all(void **state) {
-    (void)state;
-    render_close(&devices[0]);
-    render_close(&devices[1]);
-    return 0;
-}
-
 /* Compiling a view's shaders is what takes time; without an argument one scene shows the most. The
    second names one test. */
 int main(int count, char **arguments) {
@@ -501,8 +457,9 @@ int main(int count, char **arguments) {
         cmocka_unit_test(surfaces),
         cmocka_unit_test(depth_alone),
     };
+    render_module(sdv_module());
     if (count > 2)
         cmocka_set_test_filter(arguments[2]);
-    return count > 1 ? cmocka_run_group_tests(others, open_all, close_all)
-                     : cmocka_run_group_tests(first, open_all, close_all);
+    return count > 1 ? cmocka_run_group_tests(others, render_open_both, render_close_both)
+                     : cmocka_run_group_tests(first, render_open_both, render_close_both);
 }

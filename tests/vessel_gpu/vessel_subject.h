@@ -1,5 +1,5 @@
-/* A tree built to hurt, as an object: thick and thin, a child inside its parent, a lone ball, a
- * radius of 0. */
+/* What the tests of trees on both backends draw: a tree built to hurt, as an object (thick and
+ * thin, a child inside its parent, a lone ball, a radius of 0), and a shot of one. */
 #ifndef VESSEL_SUBJECT_H
 #define VESSEL_SUBJECT_H
 
@@ -101,6 +101,39 @@ static void subject_free(subject *s) {
     sdv_grid_free(&s->grid);
     sdv_tree_free(&s->tree);
     free(s->colors);
+}
+
+/* Nothing but the sets, a pixel as it is traced; the camera sees all of a subject. */
+static void shot_make(render_shot *shot, lao_settings *lines, uint32_t width, uint32_t height) {
+    memset(shot, 0, sizeof *shot);
+    memset(lines, 0, sizeof *lines);
+    shot->width = width;
+    shot->height = height;
+    shot->background[3] = 1;
+    lines->set = LAO_SET(occlusion);
+    lines->supersampling = 1;
+    shot->camera = render_camera(0.3, 0.5, 0.8, 45);
+    render_perspective(&shot->camera, 40, (double)width / height, 1, 200);
+}
+
+/* A shot of one set. */
+typedef struct scene {
+    render_shot shot;
+    lao_settings lines;
+    sdv_settings vessel;
+    const void *settings[1];
+} scene;
+
+/* `object` NULL: none. It must not move. */
+static inline void scene_make(scene *s, const lao_object_desc *object, uint32_t width,
+                              uint32_t height) {
+    memset(s, 0, sizeof *s);
+    shot_make(&s->shot, &s->lines, width, height);
+    s->settings[0] = &s->vessel;
+    s->shot.set_count = 1;
+    s->shot.settings[0] = &s->lines;
+    s->shot.objects[0] = object;
+    s->shot.module_settings[0] = s->settings;
 }
 
 #endif
