@@ -162,6 +162,33 @@ static void test_failures(void **state) {
     program_free(&run);
 }
 
+/* Lines of another unit than mm are drawn as wide as suits them, which is told once; those of a
+ * usual size as ever, and all as --width says. */
+static void test_odd_sizes(void **state) {
+    static const struct {
+        double size;
+        const char *flags, *told; /* NULL: nothing is */
+    } rows[] = {{2, "", "too wide; they are 0.0067 mm"},
+                {2, "--width 0.1", NULL},
+                {150, "", NULL},
+                {3000, "", "too thin; they are 10 mm"}};
+    (void)state;
+    for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
+        char text[160];
+        snprintf(text, sizeof text,
+                 "# vtk DataFile Version 3.0\nx\nASCII\nDATASET POLYDATA\nPOINTS 2 float\n0 0 0 %g "
+                 "0 0\nLINES 1 3\n2 0 1\n",
+                 rows[i].size);
+        write_text("odd.vtk", text);
+        program_run run = RUN("render odd.vtk %s --size 32x32 --ssaa 1 -o odd.png", rows[i].flags);
+        assert_int_equal(run.code, 0);
+        if (rows[i].told)
+            assert_non_null(strstr(run.err, rows[i].told));
+        assert_int_equal(program_lines(run.err), rows[i].told ? 1 : 0);
+        program_free(&run);
+    }
+}
+
 /* Nothing is left where nothing can be written. */
 static void test_no_folder(void **state) {
     (void)state;
@@ -638,27 +665,17 @@ static void test_nothing_left(void **state) {
 
 int main(int argc, char **argv) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_help),
-        cmocka_unit_test(test_wrong_usage),
-        cmocka_unit_test(test_failures),
-        cmocka_unit_test(test_no_folder),
-        cmocka_unit_test(test_interrupt),
-        cmocka_unit_test(test_info),
-        cmocka_unit_test(test_info_tree),
-        cmocka_unit_test(test_info_mesh),
-        cmocka_unit_test(test_flags),
-        cmocka_unit_test(test_flags_of_files),
-        cmocka_unit_test(test_camera),
-        cmocka_unit_test(test_sequence),
-        cmocka_unit_test(test_times),
-        cmocka_unit_test(test_videos),
-        cmocka_unit_test(test_timings),
-        cmocka_unit_test(test_dump),
-        cmocka_unit_test(test_dump_of_directions),
-        cmocka_unit_test(test_compare),
-        cmocka_unit_test(test_both_backends),
-        cmocka_unit_test(test_real_file),
-        cmocka_unit_test(test_nothing_left),
+        cmocka_unit_test(test_help),           cmocka_unit_test(test_wrong_usage),
+        cmocka_unit_test(test_failures),       cmocka_unit_test(test_odd_sizes),
+        cmocka_unit_test(test_no_folder),      cmocka_unit_test(test_interrupt),
+        cmocka_unit_test(test_info),           cmocka_unit_test(test_info_tree),
+        cmocka_unit_test(test_info_mesh),      cmocka_unit_test(test_flags),
+        cmocka_unit_test(test_flags_of_files), cmocka_unit_test(test_camera),
+        cmocka_unit_test(test_sequence),       cmocka_unit_test(test_times),
+        cmocka_unit_test(test_videos),         cmocka_unit_test(test_timings),
+        cmocka_unit_test(test_dump),           cmocka_unit_test(test_dump_of_directions),
+        cmocka_unit_test(test_compare),        cmocka_unit_test(test_both_backends),
+        cmocka_unit_test(test_real_file),      cmocka_unit_test(test_nothing_left),
     };
     if (argc < 2)
         return 2;
