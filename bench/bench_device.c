@@ -40,26 +40,12 @@ static bool open_gl(bench_device *device) {
 #endif
 
 #ifdef LINEAO_HAVE_VK
-static void *get_instance_proc(void *instance, const char *name) {
-    PFN_vkVoidFunction function = vkGetInstanceProcAddr((VkInstance)instance, name);
-    void *pointer;
-    memcpy(&pointer, &function, sizeof pointer);
-    return pointer;
-}
-
 static bool open_vk(bench_device *device) {
     char error[HOST_VK_ERROR_SIZE];
     lao_vk_desc desc;
     if (!host_vk_open(NULL, &device->vk, error))
         return bench_fail("vk: %s", error);
-    memset(&desc, 0, sizeof desc);
-    desc.instance = host_vk_instance(device->vk);
-    desc.physical_device = host_vk_physical(device->vk);
-    desc.device = host_vk_device(device->vk);
-    desc.get_instance_proc = get_instance_proc;
-    desc.api_version = host_vk_api_version(device->vk);
-    desc.queue_family = host_vk_family(device->vk);
-    desc.queue = host_vk_queue(device->vk);
+    desc = host_vk_lend(device->vk);
     return lao_vk_backend(&desc, &device->functions) == LAO_OK ||
            bench_fail("vk: the backend refused its device");
 }

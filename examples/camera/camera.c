@@ -143,6 +143,57 @@ void camera_fit_end(const camera_fit *fit, camera_pose *out) {
     out->ortho_height = fit->fovy > 0.0 ? 0.0 : height > 0.0 ? height : 2.0 * radius;
 }
 
+void camera_orbit_begin(camera_orbit *orbit, const camera_fit *fit) {
+    orbit->fit = *fit;
+    orbit->axis[0] = 0.5 * (fit->low[0] + fit->high[0]);
+    orbit->axis[1] = 0.5 * (fit->low[2] + fit->high[2]);
+    orbit->radius = 0.0;
+    orbit->reach[0] = orbit->reach[1] = -INFINITY;
+}
+
+void camera_orbit_add(camera_orbit *orbit, const float *points, size_t step, size_t count) {
+    const camera_fit *fit = &orbit->fit;
+    double slope = fit->fovy > 0.0 ? fit->slope[1] : 0.0, rim = sqrt(1.0 + slope * slope);
+    for (size_t i = 0; i < count; i++) {
+        const float *at = points + step * i;
+        const double p[3] = {at[0], at[1], at[2]}, ball = step > 3 ? fmax(at[3], 0.0) : 0.0;
+        if (!isfinite(p[0]) || !isfinite(p[1]) || !isfinite(p[2]) || !isfinite(ball))
+            continue;
+        double apart =
+            hypot(dot(p, fit->right) - orbit->axis[0], dot(p, fit->forward) - orbit->axis[1]);
+        double high = dot(p, fit->up), near = slope * apart + rim * ball;
+        orbit->radius = fmax(orbit->radius, apart + ball);
+        orbit->reach[0] = fmax(orbit->reach[0], high + near);
+        orbit->reach[1] = fmax(orbit->reach[1], -high + near);
+    }
+}
+
+/* The eye is at a distance D from the axis, at a height H. A circle of radius R around the axis is
+ * seen from there at an angle whose sine is R / D: R <= D s / sqrt(1 + s^2). Of a point at height h
+ * and r from the axis the nearest place counts: |h - H| <= s (D - r), so H + s D >= max(h + s r)
+ * and -H + s D >= max(-h + s r). */
+void camera_orbit_end(const camera_orbit *orbit, camera_pose *out) {
+    const camera_fit *fit = &orbit->fit;
+    const double *reach = orbit->reach;
+    camera_fit_end(fit, out);
+    if (reach[0] == -INFINITY)
+        return;
+    double both = reach[0] + reach[1], wide = orbit->radius / fit->slope[0];
+    double high = 0.5 * (reach[0] - reach[1]);
+    double away = 1.25 * orbit->radius; /* nothing touches the eye */
+    if (fit->fovy > 0.0)
+        away = fmax(fmax(away, 0.5 * both / fit->slope[1]), hypot(wide, orbit->radius));
+    away = away > 0.0 ? away : 1.0; /* a single point */
+    for (int i = 0; i < 3; i++) {
+        out->center[i] =
+            orbit->axis[0] * fit->right[i] + high * fit->up[i] + orbit->axis[1] * fit->forward[i];
+        out->eye[i] = out->center[i] - away * fit->forward[i];
+    }
+    double height = fmax(both / fit->slope[1], 2.0 * orbit->radius / fit->slope[0]);
+    if (!(fit->fovy > 0.0) && height > 0.0)
+        out->ortho_height = height;
+}
+
 void camera_frame(const float lo[3], const float hi[3], const float *points, size_t count,
                   const float direction[3], const float up[3], double aspect, double margin,
                   camera_pose *out) {

@@ -35,6 +35,9 @@ char *camera_print(const camera_pose *camera);
 
 /* Writes that text and a line end. */
 bool camera_write(const char *path, const camera_pose *camera, char error[CAMERA_ERROR_SIZE]);
+/* Of several an array, which camera_read_all reads. */
+bool camera_write_all(const char *path, const camera_pose *cameras, uint32_t count,
+                      char error[CAMERA_ERROR_SIZE]);
 
 /* Direction of view and up vector of "axial", "coronal", "sagittal" or "iso"; else false.
  *   axial     from above (-z), front up: neurological, the patient's right is on the right
@@ -63,8 +66,29 @@ void camera_fit_add(camera_fit *fit, const float *points, size_t count);
 /* Without any point: the unit ball around the origin. */
 void camera_fit_end(const camera_fit *fit, camera_pose *out);
 
-/* All of it with a field of view of 30 degrees: fits the points or, when points is NULL, the
- * corners of the box lo..hi. A margin of 0.05 looks well. */
+/* Framing of a whole turn, for a camera that goes round its up vector: one distance at which
+ * nothing leaves the picture on the way. Begins where camera_fit_add has seen all points, whose
+ * middle the axis goes through; they go through camera_orbit_add once more. The result is exact for
+ * balls in that the farthest of them touch the margin somewhere on the way; what is between them
+ * (round cones, triangles) stays inside it too. */
+typedef struct camera_orbit {
+    camera_fit fit;
+    double axis[2];  /* along right and forward */
+    double radius;   /* around the axis */
+    double reach[2]; /* largest of +-height + slope * distance from the axis */
+} camera_orbit;
+
+void camera_orbit_begin(camera_orbit *orbit, const camera_fit *fit);
+
+/* Adds count points of `step` floats: 3, or 4 with the radius of a ball. Those that are not finite
+ * do not count. */
+void camera_orbit_add(camera_orbit *orbit, const float *points, size_t step, size_t count);
+
+/* Without any point: as camera_fit_end. */
+void camera_orbit_end(const camera_orbit *orbit, camera_pose *out);
+
+/* All of a single picture with a field of view of 30 degrees: fits the points or, when points is
+ * NULL, the corners of the box lo..hi. A margin of 0.05 looks well. */
 void camera_frame(const float lo[3], const float hi[3], const float *points, size_t count,
                   const float direction[3], const float up[3], double aspect, double margin,
                   camera_pose *out);

@@ -206,17 +206,29 @@ char *camera_print(const camera_pose *camera) {
     return text;
 }
 
-bool camera_write(const char *path, const camera_pose *camera, char error[CAMERA_ERROR_SIZE]) {
-    char *text = camera_print(camera);
-    if (!text)
-        return fail(error, path, "out of memory");
+static bool put_cameras(FILE *file, const camera_pose *cameras, uint32_t count) {
+    bool ok = count == 1 || fputs("[", file) >= 0;
+    for (uint32_t i = 0; ok && i < count; i++) {
+        char *text = camera_print(&cameras[i]);
+        ok = text && fprintf(file, "%s%s", i ? ",\n" : "", text) > 0;
+        free(text);
+    }
+    return ok && fputs(count == 1 ? "\n" : "]\n", file) >= 0;
+}
+
+bool camera_write_all(const char *path, const camera_pose *cameras, uint32_t count,
+                      char error[CAMERA_ERROR_SIZE]) {
+    errno = ENOMEM; /* unless the file has another reason */
     FILE *file = fopen(path, "w");
-    bool ok = file && fprintf(file, "%s\n", text) > 0;
+    bool ok = file && put_cameras(file, cameras, count);
     int code = errno;
     if (file && fclose(file) != 0 && ok) {
         ok = false;
         code = errno;
     }
-    free(text);
     return ok || fail(error, path, strerror(code));
+}
+
+bool camera_write(const char *path, const camera_pose *camera, char error[CAMERA_ERROR_SIZE]) {
+    return camera_write_all(path, camera, 1, error);
 }

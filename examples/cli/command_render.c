@@ -155,11 +155,14 @@ static bool render(const cli_options *options, const cli_scene *scene) {
         memset(shot.background, 0, sizeof shot.background);
     memset(&session, 0, sizeof session);
     const uint32_t size[2] = {shot.width, shot.height};
-    bool ok = cli_legends_check(options, scene, NULL, 0, size) &&
-              cli_context_make(scene, &shot, &around.context) &&
-              cli_session_open(&session, options->backend, scene, &shot,
-                               options->dump ? LAO_VIEW_KEEP_IMAGES : 0) &&
-              render_all(&around, &session, &shot) && write_json(options, &session, &shot);
+    char note[CLI_NOTE];
+    bool ok = cli_legends_check(options, scene, NULL, 0, size, note);
+    if (ok)
+        cli_legends_warn(options, options->out, note);
+    ok = ok && cli_context_make(scene, &shot, &around.context) &&
+         cli_session_open(&session, options->backend, scene, &shot,
+                          options->dump ? LAO_VIEW_KEEP_IMAGES : 0) &&
+         render_all(&around, &session, &shot) && write_json(options, &session, &shot);
     cli_session_close(&session);
     cli_context_free(&around.context);
     return ok;

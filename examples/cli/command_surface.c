@@ -1,5 +1,6 @@
 /* lineao surface: vessel walls as pictures and numbers. */
 #include "commands.h"
+#include "legends.h"
 #include "report.h"
 #include "surface.h"
 #include "writing.h"
@@ -155,6 +156,8 @@ static bool render(cli_wall *wall) {
     bool ok =
         cli_wall_legends_check(wall, &shot) && cli_write_camera(options, &shot.camera) &&
         (!options->surface.vertices || write_vertices(wall, &shot, options->surface.vertices));
+    if (ok)
+        cli_legends_warn(options, options->out, wall->note);
     if (!ok || (!options->out && !options->dump && !options->timings))
         return ok;
     ok = cli_session_open(&session, options->backend, &wall->scene, &shot,
@@ -178,8 +181,9 @@ static void add_warnings(const cli_wall *wall, cJSON *list) {
         else
             cli_warn(wall->name, text);
     }
-    if (!list)
-        cli_scene_warn(&wall->scene);
+    if (list && *wall->note)
+        cJSON_AddItemToArray(list, cJSON_CreateString(wall->note));
+    cli_scene_warn(&wall->scene);
 }
 
 static bool report(const cli_wall *wall) {

@@ -1,6 +1,7 @@
 /* lineao vessel: vessel trees as pictures, layouts and numbers. */
 #include "commands.h"
 #include "image.h"
+#include "legends.h"
 #include "report.h"
 #include "writing.h"
 #include "vessel_lens.h"
@@ -77,6 +78,7 @@ typedef struct stage {
     cli_page page;              /* with --link */
     picture flats[CLI_TARGETS]; /* owned; layouts */
     cli_video *video;
+    char note[CLI_NOTE]; /* what pictures have no room for, or "" */
 } stage;
 
 static bool write_page(const char *path, stage *s) {
@@ -84,7 +86,7 @@ static bool write_page(const char *path, stage *s) {
     picture whole;
     if (!picture_make(s->options->size[0], s->options->size[1], &whole))
         return cli_fail("out of memory");
-    bool ok = cli_page_draw(&s->page, s->trees, &s->shot, s->sessions, s->flats, &whole) &&
+    bool ok = cli_page_draw(&s->page, s->trees, s->sessions, s->flats, &whole) &&
               cli_write_pixels(path, s->video, &whole, opaque);
     picture_free(&whole);
     return ok;
@@ -97,8 +99,7 @@ static const cli_tree *scaled_tree(const stage *s) {
 
 static bool draw_legend(void *user, picture *p) {
     stage *s = user;
-    const char *side = s->options->legend;
-    return !side || strcmp(side, "off") == 0 || cli_tree_legend(scaled_tree(s), side, p);
+    return cli_tree_legend(scaled_tree(s), s->options->legend, p);
 }
 
 static bool write_view(const char *path, stage *s) {
@@ -153,6 +154,11 @@ static bool draw_all(stage *s, uint32_t flags) {
     return ok;
 }
 
+static bool number_all(stage *s) {
+    return !s->options->vessel.link || !s->options->out ||
+           cli_page_number(&s->page, s->trees, &s->shot, s->sessions);
+}
+
 static bool draw_views(stage *s, const view_list *views) {
     const cli_options *options = s->options;
     uint32_t flags = options->timings ? LAO_FRAME_TIMINGS : 0;
@@ -168,7 +174,7 @@ static bool draw_views(stage *s, const view_list *views) {
         if (views->count > 1)
             cli_progress_show(&progress, i, views->count);
         bool last = options->vessel.last, shown = !last || i + 1 == views->count;
-        ok = draw_all(s, flags) &&
+        ok = draw_all(s, flags) && number_all(s) &&
              (!shown || write_frame(s, views->numbered && !last ? (int64_t)i : -1));
     }
     cli_progress_end(&progress);
@@ -203,8 +209,7 @@ static bool write_layout_picture(const cli_tree *tree, const char *path, const c
     picture p;
     if (!cli_layout_picture(tree, &p))
         return false;
-    bool ok = (!side || strcmp(side, "off") == 0 || cli_tree_legend(tree, side, &p)) &&
-              cli_write_pixels(path, NULL, &p, opaque);
+    bool ok = cli_tree_legend(tree, side, &p) && cli_write_pixels(path, NULL, &p, opaque);
     picture_free(&p);
     return ok;
 }
@@ -217,6 +222,20 @@ static bool draw_flats(stage *s) {
               cli_fail("out of memory")) &&
              cli_flat_draw(&s->trees[i], &s->flats[i]);
     return ok;
+}
+
+/* All pictures, the layout's too, have the size that was asked for. */
+static bool check_legend(stage *s) {
+    const cli_options *options = s->options;
+    const char *name = options->out ? options->out : options->vessel.layout[2];
+    bool page = options->vessel.link && options->out;
+    const cli_tree *tree = page ? &s->trees[0] : scaled_tree(s);
+    if (!name)
+        return true;
+    if (!cli_tree_legend_check(tree, page ? s->page.side : options->legend, options->size, s->note))
+        return false;
+    cli_legends_warn(options, name, s->note);
+    return true;
 }
 
 static bool prepare(stage *s, const view_list *views) {
@@ -236,7 +255,7 @@ static bool prepare(stage *s, const view_list *views) {
         cli_tree_fit_period(&s->trees[i], &s->shot);
     if (ok)
         cli_lens_fit(s->lens, &s->trees[0], &s->shot);
-    return ok && cli_write_camera(options, &s->shot.camera) &&
+    return ok && check_legend(s) && cli_write_camera(options, &s->shot.camera) &&
            (!options->vessel.link || !options->out || draw_flats(s));
 }
 
@@ -317,7 +336,8 @@ static bool add_target(const cli_tree *tree, cJSON *list) {
     return at_risk != NULL;
 }
 
-static bool report(const cli_tree *tree, uint32_t count) {
+static bool report(const stage *s) {
+    const cli_tree *tree = &s->trees[0];
     const sdv_tree_info *info = &tree->vessel.tree.info;
     cJSON *json = cJSON_CreateObject();
     bool ok = true;
@@ -350,10 +370,13 @@ static bool report(const cli_tree *tree, uint32_t count) {
         cJSON_AddItemToObject(json, "least_distance",
                               least < SDV_FAR ? cli_json_float(least) : cJSON_CreateNull());
         cJSON *targets = cJSON_AddArrayToObject(json, "targets");
-        for (uint32_t i = 0; ok && i < count; i++)
+        for (uint32_t i = 0; ok && i < s->count; i++)
             ok = add_target(&tree[i], targets);
     }
-    add_warnings(tree, cJSON_AddArrayToObject(json, "warnings"));
+    cJSON *warnings = cJSON_AddArrayToObject(json, "warnings");
+    add_warnings(tree, warnings);
+    if (*s->note)
+        cJSON_AddItemToArray(warnings, cJSON_CreateString(s->note));
     if (ok)
         return cli_write_json(NULL, json);
     cJSON_Delete(json);
@@ -382,7 +405,7 @@ static bool run(stage *s) {
         (o->layout[1] && !write_layout(tree, o->layout[1], false)) || !render(s))
         return false;
     if (s->options->json)
-        return report(tree, s->count);
+        return report(s);
     add_warnings(tree, NULL);
     return true;
 }
@@ -417,5 +440,6 @@ int cli_vessel(const cli_options *options) {
         cli_tree_free(&trees[i]);
     }
     cli_tree_free(&lens.tree);
+    cli_page_free(&s.page);
     return ok ? CLI_OK : CLI_FAILED;
 }

@@ -8,8 +8,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* The unit of an attribute that is known by its name, or NULL. */
-static const char *unit_of(const char *attribute) {
+const char *cli_attribute_unit(const char *attribute) {
     static const char *const units[][2] = {{"time", "ms"}, {"speed", "m/s"}, {"velocity", "m/s"}};
     for (size_t i = 0; i < sizeof units / sizeof *units; i++) {
         if (strcmp(units[i][0], attribute) == 0)
@@ -37,7 +36,7 @@ static bool is_known(const cli_scene *scene, uint32_t set) {
 }
 
 static void add_set(scales *s, const cli_set *set) {
-    const char *unit = unit_of(set->value);
+    const char *unit = cli_attribute_unit(set->value);
     char *title = s->titles[s->made];
     snprintf(title, TITLE, "%s%s%s%s", set->value, unit ? " (" : "", unit ? unit : "",
              unit ? ")" : "");
@@ -100,25 +99,29 @@ bool cli_legends_draw(const cli_options *options, const cli_scene *scene, const 
     return ok;
 }
 
-void cli_legends_warn(const char *name, legend_side side, const legend *list, uint32_t count,
-                      const uint32_t size[2]) {
+void cli_legends_note(legend_side side, const legend *list, uint32_t count, const uint32_t size[2],
+                      char note[CLI_NOTE]) {
     uint32_t room = legend_room(size[0], size[1], side, list, count);
-    char text[128];
-    if (room == count)
-        return;
-    snprintf(text, sizeof text,
-             "no room for %u of %u legends in %ux%u pixels; a larger --size has it",
-             (unsigned)(count - room), (unsigned)count, (unsigned)size[0], (unsigned)size[1]);
-    cli_warn(name, text);
+    *note = 0;
+    if (room < count)
+        snprintf(note, CLI_NOTE,
+                 "no room for %u of %u legends in %ux%u pixels; a larger --size has it",
+                 (unsigned)(count - room), (unsigned)count, (unsigned)size[0], (unsigned)size[1]);
 }
 
 bool cli_legends_check(const cli_options *options, const cli_scene *scene, const legend *more,
-                       uint32_t more_count, const uint32_t size[2]) {
+                       uint32_t more_count, const uint32_t size[2], char note[CLI_NOTE]) {
     legend_side side = LEGEND_LEFT;
     bool ok;
     scales *s = collect(options, scene, more, more_count, &side, &ok);
+    *note = 0;
     if (s && options->out)
-        cli_legends_warn(options->out, side, s->list, s->count, size);
+        cli_legends_note(side, s->list, s->count, size, note);
     free(s);
     return ok;
+}
+
+void cli_legends_warn(const cli_options *options, const char *name, const char *note) {
+    if (*note && !options->json)
+        cli_warn(name, note);
 }

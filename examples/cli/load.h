@@ -6,6 +6,7 @@
 #include "io_read.h"
 
 enum { CLI_MODULES = 2 }; /* besides that of the lines */
+enum { CLI_NOTE = 128 };  /* bytes of a line about a picture */
 
 typedef struct cli_set {
     const cli_source *source;
@@ -66,6 +67,7 @@ typedef struct cli_scene {
     cli_volume *volumes;       /* owned; none unless --backdrop asks for them */
     uint32_t volume_count;
     cli_outline outline; /* no triangles unless --outline asks for it */
+    bool turns;          /* its frames are of one turn around it: all are framed at once */
     double beat[2];      /* first and last time (ms); equal: none */
     double period;       /* ms: of the first set that repeats, else from first to last time */
 } cli_scene;

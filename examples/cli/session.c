@@ -45,27 +45,12 @@ static bool open_gl(cli_session *session, lao_backend *backend) {
 #endif
 
 #ifdef LINEAO_HAVE_VK
-/* A function pointer between two types that differ in name only. */
-static void *get_instance_proc(void *instance, const char *name) {
-    PFN_vkVoidFunction function = vkGetInstanceProcAddr((VkInstance)instance, name);
-    void *pointer;
-    memcpy(&pointer, &function, sizeof pointer);
-    return pointer;
-}
-
 static bool open_vk(cli_session *session, lao_backend *backend) {
     char error[HOST_VK_ERROR_SIZE];
     lao_vk_desc desc;
     if (!host_vk_open(NULL, &session->vk, error))
         return cli_fail("vk: %s", error);
-    memset(&desc, 0, sizeof desc);
-    desc.instance = host_vk_instance(session->vk);
-    desc.physical_device = host_vk_physical(session->vk);
-    desc.device = host_vk_device(session->vk);
-    desc.get_instance_proc = get_instance_proc;
-    desc.api_version = host_vk_api_version(session->vk);
-    desc.queue_family = host_vk_family(session->vk);
-    desc.queue = host_vk_queue(session->vk);
+    desc = host_vk_lend(session->vk);
     return lao_vk_backend(&desc, backend) == LAO_OK ||
            cli_fail("vk: the backend refused its device");
 }

@@ -2,6 +2,7 @@
 #include "session.h"
 
 #include "report.h"
+#include "vessel.h"
 
 #include <math.h>
 #include <string.h>
@@ -34,9 +35,18 @@ static void find_sphere(const cli_scene *scene, float sphere[4]) {
     sphere[3] = (float)fmax(sqrt(squared), 0.5 * widest);
 }
 
+/* Nodes of a tree are balls; of other sets the points tell. */
+static void add_to_orbit(const cli_set *set, camera_orbit *orbit) {
+    const sdv_tree *tree = set->tree ? &set->tree->vessel.tree : NULL;
+    if (tree && tree->node_count)
+        camera_orbit_add(orbit, &tree->nodes->x, 4, tree->node_count);
+    camera_orbit_add(orbit, set->lines.points, 3, set->lines.point_count);
+}
+
 static void fit_camera(const cli_options *options, const cli_scene *scene, double aspect,
                        camera_pose *out) {
     camera_fit fit;
+    camera_orbit orbit;
     camera_fit_begin(&fit, scene->direction, scene->up, aspect, 0.05, options->ortho ? 0 : 30);
     for (uint32_t s = 0; s < scene->count; s++) {
         if (!scene->sets[s].overlay)
@@ -44,6 +54,12 @@ static void fit_camera(const cli_options *options, const cli_scene *scene, doubl
     }
     camera_fit_add(&fit, scene->outline.positions, scene->outline.vertex_count);
     camera_fit_end(&fit, out);
+    if (scene->turns) {
+        camera_orbit_begin(&orbit, &fit);
+        for (uint32_t s = 0; s < scene->count; s++)
+            add_to_orbit(&scene->sets[s], &orbit);
+        camera_orbit_end(&orbit, out);
+    }
     for (int k = 0; k < 3; k++) {
         out->eye[k] += scene->origin[k];
         out->center[k] += scene->origin[k];

@@ -577,8 +577,9 @@ static bool with_legends(cli_wall *wall, picture *p, const uint32_t *size) {
     legend list[2];
     colour_map *maps = cli_new(2, sizeof *maps);
     uint32_t count = maps ? cli_wall_scales(wall, maps, titles, list) : 0;
-    bool ok = maps && (p ? cli_legends_draw(wall->options, &wall->scene, list, count, p)
-                         : cli_legends_check(wall->options, &wall->scene, list, count, size));
+    bool ok =
+        maps && (p ? cli_legends_draw(wall->options, &wall->scene, list, count, p)
+                   : cli_legends_check(wall->options, &wall->scene, list, count, size, wall->note));
     free(maps);
     return ok;
 }

@@ -37,6 +37,7 @@ typedef struct cli_wall {
     double curvature;     /* median, 1/mm; 0: not yet known */
     uint32_t contours[2]; /* sets of the scene that show vsf_feature 0 and 1; 0: not yet there */
     colour_map map;       /* of --wall-colormap */
+    char note[CLI_NOTE];  /* what pictures have no room for, or "" */
 } cli_wall;
 
 /* Do the options give lines: of a file, or of an embedded surface that has a flow? Volumes have
@@ -72,7 +73,7 @@ void cli_wall_eye(const cli_shot *shot, float eye[4]);
 uint32_t cli_wall_scales(cli_wall *wall, colour_map maps[2], char titles[2][160], legend out[2]);
 /* A cli_picture_edit of a cli_wall: draws the legends that --legend asks for. */
 bool cli_wall_legends(void *user, picture *p);
-/* Warns where pictures of the shot's size have no room for all of them. False: reported. */
+/* Sets wall->note. False: reported. */
 bool cli_wall_legends_check(cli_wall *wall, const cli_shot *shot);
 /* The warning i of all about the mesh; false: there are fewer. */
 bool cli_wall_warning(const cli_wall *wall, uint32_t i, char *text, size_t size);

@@ -413,6 +413,7 @@ static bool make_scene(cli_tree *tree) {
     if (tree->options->view)
         camera_view(tree->options->view, scene->direction, scene->up);
     memcpy(scene->origin, tree->vessel.origin, sizeof scene->origin);
+    scene->turns = tree->options->frames > 1 && !tree->options->vessel.cameras;
     set->source = tree->source;
     set->name = tree->name;
     set->settings = tree->source->settings;

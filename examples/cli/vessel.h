@@ -97,8 +97,20 @@ float cli_node_distance(const cli_tree *tree, uint32_t node);
 bool cli_tree_colour(cli_tree *tree);
 /* The scale of the colours, if they show a number; its map and title are kept in the others. */
 bool cli_tree_scale(const cli_tree *tree, colour_map *map, char title[160], legend *out);
-/* The same beside a picture, at a side ("left", ...). False: reported. */
+/* The same beside a picture, at a side ("left", ...; "off" or NULL: none). False: reported. */
 bool cli_tree_legend(const cli_tree *tree, const char *side, picture *p);
+/* What a picture of this size has no room for, in words, or "". False: reported. */
+bool cli_tree_legend_check(const cli_tree *tree, const char *side, const uint32_t size[2],
+                           char note[CLI_NOTE]);
+
+/* How wide a layout's edges are: by the roots of their vessels' radii, in the page's unit. */
+typedef struct cli_edges {
+    double thin, thick;   /* half of the thinnest and of the widest */
+    double least, widest; /* roots of radii, mm */
+} cli_edges;
+/* pixel: the size of one on the page. */
+cli_edges cli_edges_make(const cli_tree *tree, double width, double height, double pixel);
+double cli_edge_half(const cli_edges *edges, const cli_tree *tree, uint32_t node);
 
 /* The 2D layout drawn by the backend into a view of its own, for --layout NAME.png, in the colours
  * of the tree, which is prepared. False: reported, nothing to free. */

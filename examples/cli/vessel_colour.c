@@ -2,6 +2,7 @@
 #include "vessel.h"
 
 #include "legend.h"
+#include "legends.h"
 #include "report.h"
 
 #include <math.h>
@@ -209,9 +210,13 @@ bool cli_tree_scale(const cli_tree *tree, colour_map *map, char title[160], lege
     return true;
 }
 
-bool cli_tree_legend(const cli_tree *tree, const char *side, picture *p) {
+/* Draws the legend into p, or only checks it against a size. */
+static bool with_legend(const cli_tree *tree, const char *side, picture *p, const uint32_t *size,
+                        char *note) {
     char title[160];
     legend one;
+    if (!side || strcmp(side, "off") == 0)
+        return true;
     colour_map *map = cli_new(1, sizeof *map);
     if (!map || !cli_tree_scale(tree, map, title, &one)) {
         free(map);
@@ -222,9 +227,21 @@ bool cli_tree_legend(const cli_tree *tree, const char *side, picture *p) {
     legend_side where = strcmp(side, "left") == 0    ? LEGEND_LEFT
                         : strcmp(side, "right") == 0 ? LEGEND_RIGHT
                                                      : LEGEND_BOTTOM;
-    bool ok = legend_draw(p, where, &one, 1) || cli_fail("out of memory");
+    bool ok = !p || legend_draw(p, where, &one, 1) || cli_fail("out of memory");
+    if (!p)
+        cli_legends_note(where, &one, 1, size, note);
     free(map);
     return ok;
+}
+
+bool cli_tree_legend(const cli_tree *tree, const char *side, picture *p) {
+    return with_legend(tree, side, p, NULL, NULL);
+}
+
+bool cli_tree_legend_check(const cli_tree *tree, const char *side, const uint32_t size[2],
+                           char note[CLI_NOTE]) {
+    *note = 0;
+    return with_legend(tree, side, NULL, size, note);
 }
 
 static bool colour_alike(cli_tree *tree, const double *one) {

@@ -23,7 +23,7 @@ typedef struct flat {
     const cli_tree *tree;
     uint32_t width, height;
     double unit;              /* px: a 200th of the smaller side */
-    double thin;              /* px: half width of the thinnest edges */
+    cli_edges edges;          /* px */
     uint8_t *tones;           /* 4 per node of the tree */
     float *apart;             /* per pixel: signed distance to the nearest edge's rim, px */
     uint32_t *owner;          /* per pixel: the piece that is nearest */
@@ -52,16 +52,26 @@ static double length(const lao_v4 *a, const lao_v4 *b) {
     return hypot(hypot((double)(a->x - b->x), (double)(a->y - b->y)), (double)(a->z - b->z));
 }
 
-static float widest_of(const sdv_tree *t) {
-    float widest = 0;
-    for (uint32_t i = 0; i < t->node_count; i++)
-        widest = fmaxf(widest, t->nodes[i].w);
-    return widest;
+/* Where edges are few the thinnest have a 200th of the page and the widest four times as much; the
+ * more there are the thinner they get, down to what can be seen, and those of the trunk less so. */
+cli_edges cli_edges_make(const cli_tree *tree, double width, double height, double pixel) {
+    const sdv_tree *t = &tree->vessel.tree;
+    double unit = fmin(width, height) / 200, fits = 0.35 * width / tree->layout.node_count;
+    cli_edges e = {0, 0, SDV_FAR, 0};
+    for (uint32_t i = 0; i < t->node_count; i++) {
+        e.least = fmin(e.least, sqrt((double)t->nodes[i].w));
+        e.widest = fmax(e.widest, sqrt((double)t->nodes[i].w));
+    }
+    e.thin = fmin(fmax(fits, 0.7 * pixel), 0.5 * unit);
+    e.thick = fmax(4 * e.thin, 0.8 * unit);
+    return e;
 }
 
-static double half_width(const flat *f, uint32_t node, float widest) {
-    double part = sqrt((double)(f->tree->vessel.tree.nodes[node].w / fmaxf(widest, 1e-30f)));
-    return f->thin * (1 + 3 * part);
+double cli_edge_half(const cli_edges *edges, const cli_tree *tree, uint32_t node) {
+    double root = sqrt((double)tree->vessel.tree.nodes[node].w),
+           range = edges->widest - edges->least;
+    double part = range > 1e-3 * edges->widest ? (root - edges->least) / range : 0.5;
+    return edges->thin + part * (edges->thick - edges->thin);
 }
 
 /* Signed distance in px of a place to a piece, and where on it. */
@@ -94,7 +104,7 @@ static void put_piece(flat *f, const piece *p, uint32_t index) {
 
 /* The edge above a reduced node, cut at the tree's nodes by their way along the vessel. Returns the
  * number of pieces; `to` NULL: only counted. */
-static uint32_t edge_pieces(const flat *f, uint32_t reduced, float widest, piece *to) {
+static uint32_t edge_pieces(const flat *f, uint32_t reduced, piece *to) {
     const sdv_reduced *r = &f->tree->reduced;
     const sdv_tree *t = &f->tree->vessel.tree;
     uint32_t end = r->nodes[r->parents[reduced]], node, count = 0;
@@ -119,8 +129,8 @@ static uint32_t edge_pieces(const flat *f, uint32_t reduced, float widest, piece
         }
         to[i].from = above;
         to[i].to = node;
-        to[i].wide_a = half_width(f, above, widest);
-        to[i].wide_b = half_width(f, node, widest);
+        to[i].wide_a = cli_edge_half(&f->edges, f->tree, above);
+        to[i].wide_b = cli_edge_half(&f->edges, f->tree, node);
         node = above;
     }
     return count ? count : 1;
@@ -129,16 +139,14 @@ static uint32_t edge_pieces(const flat *f, uint32_t reduced, float widest, piece
 /* All pieces, for free(). NULL: reported. */
 static piece *make_pieces(const flat *f, uint32_t *count) {
     const sdv_reduced *r = &f->tree->reduced;
-    const sdv_tree *t = &f->tree->vessel.tree;
-    float widest = widest_of(t);
     *count = 0;
     for (uint32_t i = 0; i < r->node_count; i++)
-        *count += r->parents[i] == SDV_NONE ? 0 : edge_pieces(f, i, widest, NULL);
+        *count += r->parents[i] == SDV_NONE ? 0 : edge_pieces(f, i, NULL);
     piece *pieces = cli_new(*count, sizeof *pieces);
     uint32_t done = 0;
     for (uint32_t i = 0; pieces && i < r->node_count; i++) {
         if (r->parents[i] != SDV_NONE)
-            done += edge_pieces(f, i, widest, pieces + done);
+            done += edge_pieces(f, i, pieces + done);
     }
     return pieces;
 }
@@ -252,7 +260,7 @@ static double tick_gap(const cli_tree *tree) {
 
 static void paint(const flat *f, const piece *pieces, const colour_map *map, picture *p) {
     static const double dark[3] = {0.1, 0.1, 0.12};
-    double gap = map ? tick_gap(f->tree) : 1, rim = 0.35 * f->unit;
+    double gap = map ? tick_gap(f->tree) : 1, rim = fmin(0.35 * f->unit, 1.4 * f->edges.thin);
     for (size_t y = 0; y < f->height; y++) {
         for (size_t x = 0; x < f->width; x++) {
             size_t i = y * f->width + x;
@@ -325,7 +333,7 @@ static flat begin(const cli_tree *tree, uint32_t width, uint32_t height) {
     f.width = width;
     f.height = height;
     f.unit = fmin(width, height) / 200.0;
-    f.thin = fmin(0.5 * f.unit, fmax(0.35 * width / tree->layout.node_count, 0.2 * f.unit));
+    f.edges = cli_edges_make(tree, width, height, 1);
     return f;
 }
 
@@ -351,7 +359,7 @@ double cli_flat_place(const cli_tree *tree, const uint32_t size[2], uint32_t bra
     part = fmin(fmax(part, 0.15), 0.85); /* ends are those of other branches too */
     for (int k = 0; k < 2; k++)
         out[k] = top[k] + part * (low[k] - top[k]);
-    return 2 * half_width(&f, node, widest_of(t));
+    return 2 * cli_edge_half(&f.edges, tree, node);
 }
 
 bool cli_flat_draw(const cli_tree *tree, picture *p) {

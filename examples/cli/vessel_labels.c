@@ -48,6 +48,14 @@ static double line_distance(const double a[2], const double b[2], double x, doub
     return hypot(x - a[0] - t * dx, y - a[1] - t * dy);
 }
 
+/* Would it lie where another one was in the picture before? */
+static bool meets_kept(const cli_label *own, const cli_label *other) {
+    cli_label before = *other;
+    for (int k = 0; k < 2; k++)
+        before.at[k] = other->anchor[k] + other->from[k];
+    return boxes_meet(own, &before);
+}
+
 /* How bad a place is, in px of a longer line; INFINITY: impossible. */
 static double cost(const cli_label *labels, uint32_t count, uint32_t index,
                    const uint32_t size[2]) {
@@ -67,6 +75,8 @@ static double cost(const cli_label *labels, uint32_t count, uint32_t index,
         if (other->placed && (boxes_meet(own, other) || line_meets_box(own, other) ||
                               line_meets_box(other, own) || lines_cross(own, other)))
             return INFINITY;
+        if (!other->placed && other->kept && meets_kept(own, other))
+            sum += high;
         if (box_holds(own, other->anchor) ||
             line_distance(own->at, own->anchor, other->anchor[0], other->anchor[1]) < 0.3 * high)
             sum += high;
@@ -75,7 +85,7 @@ static double cost(const cli_label *labels, uint32_t count, uint32_t index,
 }
 
 bool cli_label_place(cli_label *labels, uint32_t count, uint32_t index, const uint32_t size[2]) {
-    enum { RINGS = 12, ROUND = 16 };
+    enum { RINGS = 12, ROUND = 16, WORTH = 3 };
     cli_label *own = &labels[index];
     double least = INFINITY, best[2] = {0, 0};
     own->placed = false;
@@ -92,9 +102,16 @@ bool cli_label_place(cli_label *labels, uint32_t count, uint32_t index, const ui
             best[1] = own->at[1];
         }
     }
-    own->at[0] = best[0];
-    own->at[1] = best[1];
+    for (int k = 0; k < 2; k++)
+        own->at[k] = own->anchor[k] + own->from[k];
     own->placed = least < INFINITY;
+    if (own->kept && cost(labels, count, index, size) <= least + WORTH * 2 * own->half[1])
+        return own->placed;
+    for (int k = 0; k < 2; k++) {
+        own->at[k] = best[k];
+        own->from[k] = own->placed ? best[k] - own->anchor[k] : own->from[k];
+    }
+    own->kept = own->kept || own->placed;
     return own->placed;
 }
 

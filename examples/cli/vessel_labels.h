@@ -10,11 +10,15 @@ typedef struct cli_label {
     double wide;      /* px: what it names is; a higher box stands beside it, not on it */
     double at[2];     /* px: middle of the box, once it is placed */
     bool placed;
+    bool kept;      /* it had a place in the picture before: */
+    double from[2]; /* px: from the anchor to the middle of the box */
 } cli_label;
 
 /* Places one of the labels where its box and the line from there to the anchor meet no box, line or
  * end of a line of those that are placed: on the anchor or around it, the nearer the better, rather
- * not over other anchors, nor its line. False: there is no such place in a picture of that size. */
+ * not over other anchors, nor its line, nor where others were kept. Where it was in the picture
+ * before, as seen from its anchor, it stays unless another place is better by a few lines of text.
+ * False: there is no such place in a picture of that size. */
 bool cli_label_place(cli_label *labels, uint32_t count, uint32_t index, const uint32_t size[2]);
 
 /* Draws a placed label, the left upper corner of its picture at `corner`. False: out of memory. */

@@ -21,7 +21,19 @@ typedef struct drawing {
     cli_scene scene;
     cli_shot shot;
     cli_session session;
+    cli_edges edges; /* mm */
+    double pixel;    /* mm */
 } drawing;
+
+/* As in the linked view; extra nodes are as wide as theirs. */
+static void set_widths(drawing *d) {
+    const cli_tree *tree = d->tree;
+    const sdv_reduced *r = &tree->reduced;
+    for (uint32_t i = 0; i < tree->vessel.tree.node_count; i++)
+        d->flat.nodes[i].w = (float)cli_edge_half(&d->edges, tree, i);
+    for (uint32_t i = 0; i < r->node_count; i++)
+        d->flat.nodes[r->ids[i]].w = (float)cli_edge_half(&d->edges, tree, r->nodes[i]);
+}
 
 /* As large as the picture, in which the smaller side is 100 mm. */
 static bool make_tree(drawing *d) {
@@ -31,8 +43,13 @@ static bool make_tree(drawing *d) {
     desc.width = (float)(100 * d->options->size[0] / side);
     desc.height = (float)(100 * d->options->size[1] / side);
     desc.radial = d->tree->source->layout.layout_radial > 0;
-    return sdv_layout_tree(&d->tree->host, &d->tree->vessel.tree, &d->tree->reduced,
-                           &d->tree->layout, &desc, &d->flat) == LAO_OK;
+    if (sdv_layout_tree(&d->tree->host, &d->tree->vessel.tree, &d->tree->reduced, &d->tree->layout,
+                        &desc, &d->flat) != LAO_OK)
+        return false;
+    d->pixel = 100 / side;
+    d->edges = cli_edges_make(d->tree, (double)desc.width, (double)desc.height, d->pixel);
+    set_widths(d);
+    return true;
 }
 
 /* The finer the more nodes there are. */
@@ -61,11 +78,11 @@ static bool make_colors(drawing *d) {
     return true;
 }
 
-/* Flat colours and an outline. */
-static void make_settings(sdv_settings *s) {
+/* Flat colours and an outline, which is thinner where edges are. */
+static void make_settings(const drawing *d, sdv_settings *s) {
     memset(s, 0, sizeof *s);
     s->surface_ambient = 1;
-    s->silhouette = 0.8f;
+    s->silhouette = (float)fmin(0.8, 0.7 * d->edges.thin / d->pixel);
     s->set = SDV_SET(surface_ambient) | SDV_SET(surface_diffuse) | SDV_SET(surface_specular) |
              SDV_SET(field_occlusion) | SDV_SET(joint_smoothness) | SDV_SET(contour) |
              SDV_SET(shadow_strength) | SDV_SET(silhouette);
@@ -80,7 +97,7 @@ static bool make_scene(drawing *d) {
     scene->count = 1;
     scene->modules[scene->module_count++] = sdv_module();
     camera_view("axial", scene->direction, scene->up);
-    make_settings(&d->settings);
+    make_settings(d, &d->settings);
     set->source = d->tree->source;
     set->name = d->tree->name;
     set->settings = d->tree->source->settings;

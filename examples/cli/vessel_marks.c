@@ -29,13 +29,16 @@ cli_branch *cli_branches_at_risk(const cli_tree *tree, uint32_t *count) {
 
 /* ---- what is named ---------------------------------------------------------------------- */
 
-/* The place of a branch that is named: the middle of what is seen of it and at risk; else of what
- * is seen; else its node that is nearest to the target. */
+/* The place of a branch that is named is a place of its middle line: that of the last picture while
+ * something of the vessel is seen there; else the one nearest to the middle of what is seen of the
+ * branch and at risk; else of what is seen; else that of the last picture, or the node that is
+ * nearest to the target. Its label points to the pixel of the branch that is nearest to there. */
 typedef struct spot {
-    uint32_t node;              /* of the tree: at it, or on the edge above */
-    double at[2];               /* px: in the tree's picture */
+    cli_axis axis;
+    double middle[2];           /* px: the place on the middle line, in the tree's picture */
+    double at[2];               /* px: what is pointed to */
+    double apart;               /* px: of `at` from the middle, squared; HUGE_VAL: none is seen */
     double sums[2][2], seen[2]; /* of pixels and their number: at risk; not */
-    double apart;               /* px: of `at` from the mean, squared */
 } spot;
 
 /* To px of the picture and its depth. */
@@ -54,22 +57,51 @@ static void project(const cli_shot *shot, const float place[3], double out[3]) {
     out[2] = p[2] / p[3];
 }
 
-static spot nearest_spot(const cli_tree *tree, const cli_shot *shot, uint32_t branch) {
+/* The ball of the tree at a place of its middle line. */
+static lao_v4 ball_at(const cli_tree *tree, const cli_axis *axis) {
+    const sdv_tree *t = &tree->vessel.tree;
+    const lao_v4 *a = &t->nodes[axis->node];
+    const lao_v4 *b = t->parents[axis->node] == SDV_NONE ? a : &t->nodes[t->parents[axis->node]];
+    return lao_v4_make(a->x + axis->part * (b->x - a->x), a->y + axis->part * (b->y - a->y),
+                       a->z + axis->part * (b->z - a->z), a->w + axis->part * (b->w - a->w));
+}
+
+static float distance_to(const lao_v4 *ball, const float place[3]) {
+    return hypotf(hypotf(place[0] - ball->x, place[1] - ball->y), place[2] - ball->z);
+}
+
+/* The place of the middle line above a node that is nearest to one of its vessel's surface. */
+static cli_axis axis_at(const cli_tree *tree, uint32_t node, const float place[3]) {
+    const cli_axis from = {node, 0}, to = {node, 1};
+    const lao_v4 a = ball_at(tree, &from), b = ball_at(tree, &to);
+    float d[3] = {b.x - a.x, b.y - a.y, b.z - a.z};
+    float size = d[0] * d[0] + d[1] * d[1] + d[2] * d[2];
+    float along = (place[0] - a.x) * d[0] + (place[1] - a.y) * d[1] + (place[2] - a.z) * d[2];
+    return (cli_axis){node, size > 0 ? fminf(fmaxf(along / size, 0), 1) : 0};
+}
+
+static cli_axis nearest_axis(const cli_tree *tree, uint32_t branch) {
     const sdv_tree *t = &tree->vessel.tree;
     uint32_t end = tree->reduced.nodes[tree->reduced.parents[branch]];
     uint32_t node = tree->reduced.nodes[branch];
-    spot s = {node, {0, 0}, {{0, 0}, {0, 0}}, {0, 0}, HUGE_VAL};
-    double at[3];
+    cli_axis nearest = {node, 0};
     float least = SDV_FAR;
     for (; node != end && node != SDV_NONE; node = t->parents[node]) {
         float d = cli_node_distance(tree, node);
-        s.node = d < least ? node : s.node;
+        nearest.node = d < least ? node : nearest.node;
         least = fminf(least, d);
     }
-    const lao_v4 *n = &t->nodes[s.node];
-    project(shot, (const float[3]){n->x, n->y, n->z}, at);
-    memcpy(s.at, at, sizeof s.at);
-    return s;
+    return nearest;
+}
+
+static void set_spot(const cli_tree *tree, const cli_shot *shot, cli_axis axis, spot *s) {
+    lao_v4 ball = ball_at(tree, &axis);
+    double at[3];
+    project(shot, (const float[3]){ball.x, ball.y, ball.z}, at);
+    s->axis = axis;
+    memcpy(s->middle, at, sizeof s->middle);
+    memcpy(s->at, at, sizeof s->at);
+    s->apart = HUGE_VAL;
 }
 
 /* The lower node of a cone on the tree's way to the root; SDV_NONE: it is on no branch. */
@@ -83,22 +115,44 @@ static uint32_t lower_node(const cli_tree *tree, float cone) {
                                             : SDV_NONE;
 }
 
-/* A pixel of a branch: first all are counted, then that nearest to their mean is taken. */
-static void add_pixel(spot *s, uint32_t node, const double at[2], bool risky, bool counted) {
+/* A pixel that shows a place of a branch. */
+typedef struct seen_pixel {
+    const float *place;
+    uint32_t node; /* it is on the edge above */
+    double at[2];
+    bool risky;
+} seen_pixel;
+
+static double apart(const double a[2], const double b[2]) {
+    return (a[0] - b[0]) * (a[0] - b[0]) + (a[1] - b[1]) * (a[1] - b[1]);
+}
+
+/* First all are counted, and those that show the place of the last picture compared; then, where
+ * none did, that nearest to the mean is looked for; then again that which shows it best. */
+enum { COUNTED, MEAN, SHOWN, PASSES };
+static void add_pixel(const cli_tree *tree, const seen_pixel *p, int pass, spot *s) {
+    lao_v4 ball = ball_at(tree, &s->axis);
     int kind = s->seen[0] > 0 ? 0 : 1;
-    if (!counted) {
-        s->seen[!risky] += 1;
-        s->sums[!risky][0] += at[0];
-        s->sums[!risky][1] += at[1];
-        return;
+    if (pass == COUNTED) {
+        s->seen[!p->risky] += 1;
+        s->sums[!p->risky][0] += p->at[0];
+        s->sums[!p->risky][1] += p->at[1];
     }
-    double dx = at[0] - s->sums[kind][0] / s->seen[kind];
-    double dy = at[1] - s->sums[kind][1] / s->seen[kind];
-    if (kind != !risky || dx * dx + dy * dy >= s->apart)
-        return;
-    s->apart = dx * dx + dy * dy;
-    s->node = node;
-    memcpy(s->at, at, sizeof s->at);
+    if (pass == MEAN) { /* of a spot whose place is not seen */
+        const double mean[2] = {s->sums[kind][0] / s->seen[kind], s->sums[kind][1] / s->seen[kind]};
+        double d = apart(p->at, mean);
+        if (kind == !p->risky && d < s->apart) {
+            s->axis = axis_at(tree, p->node, p->place);
+            memcpy(s->at, p->at, sizeof s->at);
+            s->apart = d;
+        }
+    } else if (distance_to(&ball, p->place) <= 1.25f * ball.w) {
+        double d = apart(p->at, s->middle);
+        if (d < s->apart) {
+            memcpy(s->at, p->at, sizeof s->at);
+            s->apart = d;
+        }
+    }
 }
 
 /* Pixels of the tree's picture and their depths, as the graph has them. */
@@ -107,9 +161,9 @@ typedef struct pixels {
     float *places, *depths; /* owned */
 } pixels;
 
-/* ranks: per reduced node, of its spot, SDV_NONE: it has none. */
+/* Looks at all pixels; ranks: per reduced node, of its spot, SDV_NONE: none is looked for. */
 static void add_pixels(const cli_tree *tree, const cli_shot *shot, const pixels *p,
-                       const uint32_t *ranks, spot *spots, bool counted) {
+                       const uint32_t *ranks, spot *spots, int pass) {
     for (size_t i = 0; i < (size_t)p->info.width * p->info.height; i++) {
         const float *q = p->places + 4 * i;
         uint32_t node = lower_node(tree, q[3]);
@@ -121,21 +175,43 @@ static void add_pixels(const cli_tree *tree, const cli_shot *shot, const pixels 
         bool inside = at[0] >= 0 && at[1] >= 0 && at[0] < shot->width && at[1] < shot->height;
         if (!inside || at[2] > (double)p->depths[i] + 1e-4) /* the target hides it */
             continue;
-        float distance = sdv_target_point(tree->target, lao_v3_make(q[0], q[1], q[2]));
-        add_pixel(&spots[ranks[owner]], node, at, distance < (float)tree->risk, counted);
+        float distance =
+            pass == SHOWN ? 0 : sdv_target_point(tree->target, lao_v3_make(q[0], q[1], q[2]));
+        const seen_pixel seen = {q, node, {at[0], at[1]}, distance < (float)tree->risk};
+        add_pixel(tree, &seen, pass, &spots[ranks[owner]]);
+    }
+}
+
+/* After a pass the next one looks for spots that have no pixel yet. */
+static void choose(const cli_tree *tree, const cli_shot *shot, const cli_marks *n, int pass,
+                   uint32_t *ranks, spot *spots) {
+    for (uint32_t i = 0; i < n->count; i++) {
+        spot *s = &spots[i];
+        uint32_t *rank = &ranks[n->branches[i].node];
+        bool any = s->seen[0] > 0 || s->seen[1] > 0;
+        if (pass == COUNTED && (!any || s->apart < HUGE_VAL))
+            *rank = SDV_NONE;
+        if (pass == MEAN && *rank != SDV_NONE) {
+            double at[2] = {s->at[0], s->at[1]};
+            set_spot(tree, shot, s->axis, s);
+            memcpy(s->at, at, sizeof at);
+            s->apart = apart(at, s->middle);
+        }
     }
 }
 
 /* False: reported. */
 static bool find_seen(const cli_tree *tree, const cli_shot *shot, cli_session *session,
-                      const uint32_t *ranks, spot *spots) {
+                      const cli_marks *n, uint32_t *ranks, spot *spots) {
     pixels p;
     lao_read_info info;
     p.places = cli_session_image(session, "vessel_position", 0, &p.info);
     p.depths = p.places ? cli_session_image(session, "zbuffer", 0, &info) : NULL;
     bool ok = p.places && p.depths;
-    for (int counted = 0; ok && counted < 2; counted++)
-        add_pixels(tree, shot, &p, ranks, spots, counted);
+    for (int pass = 0; ok && pass < PASSES; pass++) {
+        add_pixels(tree, shot, &p, ranks, spots, pass);
+        choose(tree, shot, n, pass, ranks, spots);
+    }
     free(p.places);
     free(p.depths);
     return ok || cli_fail("what the picture shows cannot be read");
@@ -172,10 +248,15 @@ static void place_all(cli_marks *n, const uint32_t size[2]) {
     }
 }
 
-/* In the largest letters of a few sizes that leave room for all, else in the smallest ones. */
+/* In the largest letters of a few sizes that leave room for all, else in the smallest ones; further
+ * pictures have those of the first. */
 static void fit_all(cli_marks *n, double size, const uint32_t room[2]) {
     static const double parts[] = {1, 0.85, 0.7};
     enum { LEGIBLE = 8 };
+    if (n->style.size > 0) {
+        place_all(n, room);
+        return;
+    }
     double most = fmax(fmin(0.9 * size, 0.05 * fmin(room[0], room[1])), LEGIBLE + 1);
     n->style.bold = true;
     for (int k = 0; k < 3; k++)
@@ -183,6 +264,8 @@ static void fit_all(cli_marks *n, double size, const uint32_t room[2]) {
     for (size_t i = 0; i < sizeof parts / sizeof *parts; i++) {
         if (i > 0 && (n->omitted == 0 || parts[i] * most < LEGIBLE))
             break;
+        for (uint32_t k = 0; k < n->count; k++) /* places are of letters of their size */
+            n->labels[0][k].kept = n->labels[1][k].kept = false;
         n->style.size = parts[i] * most;
         n->style.outline_width = fmax(1.2, 0.14 * n->style.size);
         place_all(n, room);
@@ -191,59 +274,75 @@ static void fit_all(cli_marks *n, double size, const uint32_t room[2]) {
 
 /* Of the vessel at a spot in the picture, px: what a diameter to the camera's right spans. */
 static double vessel_width(const cli_tree *tree, const cli_shot *shot, const spot *s) {
-    const lao_v4 *n = &tree->vessel.tree.nodes[s->node];
+    const lao_v4 n = ball_at(tree, &s->axis);
     double a[3], b[3];
     float places[2][3];
     for (int k = 0; k < 2; k++) {
-        float step = (k ? 1 : -1) * n->w;
-        places[k][0] = n->x + step * shot->view[0];
-        places[k][1] = n->y + step * shot->view[4];
-        places[k][2] = n->z + step * shot->view[8];
+        float step = (k ? 1 : -1) * n.w;
+        places[k][0] = n.x + step * shot->view[0];
+        places[k][1] = n.y + step * shot->view[4];
+        places[k][2] = n.z + step * shot->view[8];
     }
     project(shot, places[0], a);
     project(shot, places[1], b);
     return hypot(a[0] - b[0], a[1] - b[1]);
 }
 
-static bool anchor(const cli_tree *tree, const cli_shot *shot, cli_session *session,
-                   const cli_branch *branches, cli_marks *n) {
+/* Layouts do not turn: there the place of the first picture stays. */
+static bool anchor(const cli_tree *tree, const cli_shot *shot, cli_session *session, cli_marks *n) {
     const uint32_t size[2] = {shot->width, shot->height};
+    bool first = !(n->style.size > 0);
     uint32_t *ranks = cli_new(tree->reduced.node_count, sizeof *ranks);
     spot *spots = cli_new(n->count, sizeof *spots);
     bool ok = ranks && spots;
     for (uint32_t i = 0; ok && i < tree->reduced.node_count; i++)
         ranks[i] = SDV_NONE;
     for (uint32_t i = 0; ok && i < n->count; i++) {
-        ranks[branches[i].node] = i;
-        spots[i] = nearest_spot(tree, shot, branches[i].node);
+        uint32_t branch = n->branches[i].node;
+        memset(&spots[i], 0, sizeof spots[i]);
+        ranks[branch] = i;
+        set_spot(tree, shot, first ? nearest_axis(tree, branch) : n->axes[i], &spots[i]);
+        if (first) /* it is not to be kept */
+            spots[i].middle[0] = HUGE_VAL;
     }
-    ok = ok && find_seen(tree, shot, session, ranks, spots);
+    ok = ok && find_seen(tree, shot, session, n, ranks, spots);
     for (uint32_t i = 0; ok && i < n->count; i++) {
         cli_label *flat = &n->labels[1][i];
+        n->axes[i] = spots[i].axis;
         n->seen[i] = spots[i].apart < HUGE_VAL;
         memcpy(n->labels[0][i].anchor, spots[i].at, sizeof spots[i].at);
         n->labels[0][i].wide = n->seen[i] ? vessel_width(tree, shot, &spots[i]) : HUGE_VAL;
-        flat->wide = cli_flat_place(tree, size, branches[i].node, spots[i].node, flat->anchor);
+        if (first)
+            flat->wide =
+                cli_flat_place(tree, size, n->branches[i].node, spots[i].axis.node, flat->anchor);
     }
     free(ranks);
     free(spots);
     return ok;
 }
 
-bool cli_marks_make(const cli_tree *tree, const cli_shot *shot, cli_session *session, double size,
-                    cli_marks *out) {
-    const uint32_t room[2] = {shot->width, shot->height};
-    memset(out, 0, sizeof *out);
-    cli_branch *branches = cli_branches_at_risk(tree, &out->count);
-    out->seen = cli_new(out->count, sizeof *out->seen);
-    for (int k = 0; k < 2; k++)
-        out->labels[k] = cli_new(out->count, sizeof *out->labels[k]);
-    bool ok = branches && out->seen && out->labels[0] && out->labels[1] &&
-              anchor(tree, shot, session, branches, out);
-    free(branches);
-    if (ok)
-        fit_all(out, size, room);
+/* What all pictures have in common. */
+static bool begin(const cli_tree *tree, cli_marks *n) {
+    n->branches = cli_branches_at_risk(tree, &n->count);
+    n->seen = cli_new(n->count, sizeof *n->seen);
+    n->axes = cli_new(n->count, sizeof *n->axes);
+    bool ok = n->branches && n->seen && n->axes;
+    for (int k = 0; k < 2; k++) {
+        n->labels[k] = cli_new(n->count, sizeof *n->labels[k]);
+        ok = ok && n->labels[k];
+        if (n->labels[k])
+            memset(n->labels[k], 0, n->count * sizeof *n->labels[k]);
+    }
     return ok;
+}
+
+bool cli_marks_make(const cli_tree *tree, const cli_shot *shot, cli_session *session, double size,
+                    cli_marks *marks) {
+    const uint32_t room[2] = {shot->width, shot->height};
+    if ((!marks->branches && !begin(tree, marks)) || !anchor(tree, shot, session, marks))
+        return false;
+    fit_all(marks, size, room);
+    return true;
 }
 
 /* In the lower left corner of the tree's picture: what the numbers leave open. */
@@ -273,7 +372,9 @@ bool cli_marks_draw(const cli_marks *numbers, uint32_t view, const int64_t corne
 }
 
 void cli_marks_free(cli_marks *numbers) {
+    free(numbers->branches);
     free(numbers->seen);
+    free(numbers->axes);
     free(numbers->labels[0]);
     free(numbers->labels[1]);
     memset(numbers, 0, sizeof *numbers);

@@ -3,7 +3,6 @@
 #include "vessel_page.h"
 
 #include "report.h"
-#include "vessel_marks.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -96,35 +95,46 @@ static void frame(picture *p, const int64_t at[2], const uint32_t size[2]) {
 }
 
 /* A column: both views, their numbers, the line above. */
-static bool draw_column(const cli_page *page, const cli_tree *tree, const cli_shot *shot,
-                        cli_session *session, const picture *flat, uint32_t column, picture *p) {
-    cli_marks numbers;
+static bool draw_column(const cli_page *page, const cli_tree *tree, cli_session *session,
+                        const picture *flat, uint32_t column, picture *p) {
     picture solid;
-    memset(&numbers, 0, sizeof numbers);
     if (!cli_session_picture(session, &solid))
         return false;
     const picture *views[2] = {&solid, flat};
-    bool ok = !(tree->risk > 0) ||
-              cli_marks_make(tree, shot, session, text_size(page->options), &numbers);
+    bool ok = true;
     for (uint32_t view = 0; ok && view < 2; view++) {
         int64_t at[2];
         corner(page, column, view, at);
         picture_over(p, at[0], at[1], views[view]);
         frame(p, at, page->panel);
-        ok = cli_marks_draw(&numbers, view, at, page->panel[1], p);
+        ok = cli_marks_draw(&page->marks[column], view, at, page->panel[1], p);
     }
     ok = ok && (!tree->aim || head(page, tree, column, p));
-    cli_marks_free(&numbers);
     picture_free(&solid);
     return ok;
 }
 
-bool cli_page_draw(const cli_page *page, const cli_tree *trees, const cli_shot *shot,
-                   cli_session *sessions, const picture *flats, picture *p) {
+bool cli_page_draw(const cli_page *page, const cli_tree *trees, cli_session *sessions,
+                   const picture *flats, picture *p) {
     const double *paper = page->options->background;
     bool ok = true;
     picture_fill(p, 0, 0, p->width, p->height, paper, paper[3]);
     for (uint32_t i = 0; ok && i < page->columns; i++)
-        ok = draw_column(page, &trees[i], shot, &sessions[i], &flats[i], i, p);
+        ok = draw_column(page, &trees[i], &sessions[i], &flats[i], i, p);
     return ok && (!page->side || cli_tree_legend(&trees[0], page->side, p));
+}
+
+bool cli_page_number(cli_page *page, const cli_tree *trees, const cli_shot *shot,
+                     cli_session *sessions) {
+    double size = text_size(page->options);
+    bool ok = true;
+    for (uint32_t i = 0; ok && i < page->columns; i++)
+        ok = !(trees[i].risk > 0) ||
+             cli_marks_make(&trees[i], shot, &sessions[i], size, &page->marks[i]);
+    return ok;
+}
+
+void cli_page_free(cli_page *page) {
+    for (uint32_t i = 0; i < CLI_TARGETS; i++)
+        cli_marks_free(&page->marks[i]);
 }

@@ -319,6 +319,20 @@ uint32_t host_vk_family(const host_vk *host) {
 uint32_t host_vk_api_version(const host_vk *host) {
     return host->api_version;
 }
+lao_vk_desc host_vk_lend(const host_vk *host) {
+    PFN_vkGetInstanceProcAddr get_proc = host_vk_get_instance_proc(host);
+    lao_vk_desc desc;
+    memset(&desc, 0, sizeof desc);
+    desc.instance = host->instance;
+    desc.physical_device = host->physical;
+    desc.device = host->device;
+    memcpy(&desc.get_instance_proc, &get_proc,
+           sizeof get_proc); /* types that differ in name only */
+    desc.api_version = host->api_version;
+    desc.queue_family = host->family;
+    desc.queue = host->queue;
+    return desc;
+}
 const VkPhysicalDeviceFeatures *host_vk_features(const host_vk *host) {
     return &host->features;
 }

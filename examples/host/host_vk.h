@@ -9,6 +9,8 @@
 
 #include <vulkan/vulkan_core.h>
 
+#include "lineao.h"
+
 enum { HOST_VK_ERROR_SIZE = 256, HOST_VK_COMMANDS = 3 };
 
 /* Gets each validation message; called on the thread that made the Vulkan call. */
@@ -48,6 +50,10 @@ const VkPhysicalDeviceFeatures *host_vk_features(const host_vk *host); /* those 
 const char *host_vk_name(const host_vk *host);
 bool host_vk_is_software(const host_vk *host);
 PFN_vkGetInstanceProcAddr host_vk_get_instance_proc(const host_vk *host);
+
+/* What lineao's Vulkan backend is lent of this host: all of it but frames_in_flight and
+ * debug_utils, which are 0. */
+lao_vk_desc host_vk_lend(const host_vk *host);
 
 /* Validation messages (warnings and errors) so far, and the text of the first ("" without). */
 uint32_t host_vk_messages(const host_vk *host);

@@ -59,6 +59,8 @@ const char *document_name(const document *doc);
 void document_set(document *doc, uint32_t index, int setting, float value);
 void document_reset(document *doc, uint32_t index, int setting);
 float document_value(const document *doc, uint32_t index, int setting);
+/* Has a setting a meaning here? Trails want times, halos want lines; time says near_part. */
+bool document_offers(const document *doc, uint32_t index, int setting);
 /* What an edit of a setting needs to show. */
 typedef enum document_need { NEEDS_NOTHING, NEEDS_MEASURES, NEEDS_OPENING } document_need;
 document_need document_needs(const document *doc, uint32_t index, int setting);

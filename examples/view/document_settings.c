@@ -56,14 +56,16 @@ bool document_list_settings(document *doc) {
             ok = add_set_settings(doc, i);
             lines = lines || !scene->sets[i].object;
         }
-        return ok && (lines || /* some of these are the picture's */
-                      add_settings(doc, lao_lines_module(), "Lines", &scene->sets[0].settings, 0));
+        return ok &&
+               (lines || /* some of these are the picture's */
+                add_settings(doc, lao_lines_module(), "Picture", &scene->sets[0].settings, 0));
     }
     bool tree = doc->command == CLI_VESSEL;
     uint32_t last = tree ? scene->count - 1 : doc->wall.lit ? 1 : 0;
     return (tree ? add_settings(doc, sdv_module(), "Vessels", &doc->tree.settings, 0)
                  : add_settings(doc, vsf_module(), "Surface", &doc->wall.settings, 0)) &&
-           add_settings(doc, lao_lines_module(), "Lines", &scene->sets[last].settings, last);
+           add_settings(doc, lao_lines_module(), scene->sets[last].object ? "Picture" : "Lines",
+                        &scene->sets[last].settings, last);
 }
 
 /* What is set holds inside a lens too, as --set does, but for the circle. */
@@ -165,6 +167,20 @@ float document_value(const document *doc, uint32_t index, int setting) {
     const document_settings *s = &doc->settings[index];
     lao_settings_resolve(s->module, s->now, values);
     return values[setting];
+}
+
+bool document_offers(const document *doc, uint32_t index, int setting) {
+    const uint64_t of_times = LAO_SET(trail) | LAO_SET(trail_length) | LAO_SET(taper_start) |
+                              LAO_SET(taper_width) | LAO_SET(period) | LAO_SET(highlight_beta);
+    const uint64_t of_light = VSF_SET(near_gamma) | VSF_SET(near_steps);
+    const document_settings *s = &doc->settings[index];
+    const cli_set *set = &doc->scene->sets[s->set];
+    uint64_t none = 0;
+    if (s->module == vsf_module())
+        none = VSF_SET(near_part) | (set->wall && set->wall->lit ? 0 : of_light);
+    else if (s->module == lao_lines_module())
+        none = set->object ? ~LAO_SET(supersampling) : set->times ? 0 : of_times;
+    return !(none >> setting & 1);
 }
 
 document_need document_needs(const document *doc, uint32_t index, int setting) {

@@ -127,7 +127,7 @@ void film_panel(view *v) {
     char text[64];
     if (!f->running)
         return;
-    if (ui_dialog("Video", v->picture, &open)) {
+    if (ui_dialog("Video", v->picture, true, &open)) {
         snprintf(text, sizeof text, "%d of %d frames", f->done, f->count);
         ui_text(f->path);
         ui_progress((float)f->done / (float)f->count, text);

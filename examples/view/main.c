@@ -19,7 +19,7 @@ static const char help[] =
     "without a FILE an embedded scene. Files dropped on the window join what is open.\n\n"
     "Flags of its own\n"
     "  --backend gl|vk     OpenGL or Vulkan (gl)\n"
-    "  --window WxH        size of the window (1280x800)\n"
+    "  --window WxH        size of the window (1280x800 times the scale)\n"
     "  --scale N           of the user interface (the monitor's)\n"
     "  --compare           OpenGL and Vulkan side by side\n"
     "  --no-vsync          do not wait for the monitor\n"
@@ -29,8 +29,8 @@ static const char help[] =
 
 typedef struct arguments {
     const char *backend;
-    int width, height;
-    float scale;
+    int width, height; /* 0: as suits the scale */
+    float scale;       /* 0: the monitor's */
     bool vsync, validate, trace, compare, help;
     const char **words; /* owned: the rest */
     uint32_t count;
@@ -99,8 +99,6 @@ static int take(arguments *a, const char *word, const char *value) {
 static bool parse(int argc, char **argv, arguments *out) {
     memset(out, 0, sizeof *out);
     out->backend = "gl";
-    out->width = 1280;
-    out->height = 800;
     out->vsync = true;
     out->words = cli_new((size_t)argc + 3, sizeof *out->words);
     for (int i = 1; out->words && i < argc;) {
@@ -140,14 +138,30 @@ static void on_placed(void *user, const char *label, window_rect at) {
     trace(user, "at %d %d %d %d %s", at.x, at.y, at.width, at.height, label);
 }
 
-static float monitor_scale(GLFWwindow *glfw) {
+/* Of the monitor that windows open on. */
+static float monitor_scale(void) {
+    GLFWmonitor *monitor = glfwGetPrimaryMonitor();
     float x = 1, y = 1;
-    glfwGetWindowContentScale(glfw, &x, &y);
+    if (monitor)
+        glfwGetMonitorContentScale(monitor, &x, &y);
     return x >= 1 ? x : 1;
 }
 
+/* A size that suits the user interface, as far as the monitor has room. */
+static void usual_size(float scale, int *width, int *height) {
+    GLFWmonitor *monitor = glfwGetPrimaryMonitor();
+    int x = 0, y = 0, wide = 0, high = 0;
+    if (monitor)
+        glfwGetMonitorWorkarea(monitor, &x, &y, &wide, &high);
+    *width = (int)(1280 * scale);
+    *height = (int)(800 * scale);
+    *width = wide > 64 && wide < *width ? wide : *width;
+    *height = high > 64 && high < *height ? high : *height;
+}
+
 static bool open(view *v, const arguments *a) {
-    ui_desc desc = {a->scale, a->trace ? on_placed : NULL, v};
+    ui_desc desc = {a->scale > 0 ? a->scale : monitor_scale(), a->trace ? on_placed : NULL, v};
+    int width = a->width, height = a->height;
     v->trace = a->trace;
     v->compare_first = a->compare;
     v->window.backend = strcmp(a->backend, "vk") == 0 ? &window_vk_backend : &window_gl_backend;
@@ -168,10 +182,10 @@ static bool open(view *v, const arguments *a) {
     v->shot_size[1] = 960;
     snprintf(v->shot_path, sizeof v->shot_path, "picture.png");
     snprintf(v->bookmark_path, sizeof v->bookmark_path, "camera.json");
-    if (!v->window.backend->open(&v->window, "lineao", a->width, a->height))
+    if (!width)
+        usual_size(desc.scale, &width, &height);
+    if (!v->window.backend->open(&v->window, "lineao", width, height))
         return false;
-    if (!(desc.scale > 0))
-        desc.scale = monitor_scale(v->window.glfw);
     input_attach(v);
     return ui_open(&v->window, &desc);
 }

@@ -73,6 +73,22 @@ static void mark_place(const view *v, const picked *p, uint32_t color) {
     }
 }
 
+/* What the axes are called, behind their ends. */
+static void name_axes(const view *v) {
+    for (int k = 0; k < 3; k++) {
+        const char name[2] = {(char)('x' + k), '\0'};
+        double end[3];
+        float at[2], s = ui_scale();
+        const float *color = stage_axis(v, k, end);
+        if (!stage_place(v, end, at))
+            continue;
+        uint32_t rgba = 0xff000000u;
+        for (int i = 0; i < 3; i++)
+            rgba |= (uint32_t)(255 * color[i]) << 8 * i;
+        ui_draw_text(true, at[0] + 5 * s, at[1] - ui_text_height(), rgba, name);
+    }
+}
+
 /* Beside the pointer: what it is on. */
 static void tell(const picked *p) {
     char text[512], fact[128];
@@ -88,6 +104,8 @@ void marks_draw(const view *v) {
     if (!v->open || v->picture.width < 1 || v->picture.height < 1)
         return;
     ui_clip(true, v->picture);
+    if (v->axes && !v->compare)
+        name_axes(v);
     if (v->picked.kind != PICKED_NOTHING) {
         mark_branch(v, &v->picked, chosen_color);
         mark_place(v, &v->picked, chosen_color);

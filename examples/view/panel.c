@@ -91,35 +91,64 @@ static void left(view *v, window_rect place) {
 static void keys_dialog(view *v) {
     if (!v->keys)
         return;
-    if (ui_dialog("Pointer and keys", v->picture, &v->keys)) {
+    if (ui_dialog("Pointer and keys", v->picture, false, &v->keys)) {
         panel_keys();
         v->keys = !ui_button("Close##keys") && v->keys;
     }
     ui_panel_end();
 }
 
-/* The last things that were said, until they are closed. */
-static void said(view *v) {
-    char text[MESSAGE_SIZE];
-    bool failure, open = true;
-    uint32_t count = messages_count(v->messages);
-    if (count == v->seen)
+/* The last things that were said, until they are closed. Warnings leave the middle free, where the
+ * picture is that they are about; busy: their place is taken, they wait. */
+static void said(view *v, bool busy) {
+    enum { SHOWN = 6 };
+    char texts[SHOWN][MESSAGE_SIZE];
+    bool failures[SHOWN], failed = false, open = true;
+    uint32_t count = messages_count(v->messages), shown = 0;
+    while (shown < SHOWN && shown < count - v->seen &&
+           messages_get(v->messages, shown, &failures[shown], texts[shown]))
+        failed = failures[shown++] || failed;
+    if (!shown || (busy && !failed))
         return;
-    window_rect place = v->picture;
-    if (ui_dialog("Messages", place, &open)) {
-        for (uint32_t i = 0; i < count - v->seen && i < 6; i++) {
-            if (!messages_get(v->messages, i, &failure, text))
-                break;
-            if (failure)
-                ui_text_error(text);
-            else
-                ui_text_wrapped(text);
-        }
+    if (ui_dialog(failed ? "Not done" : "Messages", v->picture, !failed, &open)) {
+        for (uint32_t i = 0; i < shown; i++)
+            (failures[i] ? ui_text_error : ui_text_wrapped)(texts[i]);
         open = !ui_button("Close") && open;
     }
     ui_panel_end();
     if (!open)
         v->seen = count;
+}
+
+/* What goes on beside the window, once it has taken long enough to be read. Is it there? */
+static bool work(view *v) {
+    static const double soon = 0.3; /* s */
+    char doing[MESSAGE_SIZE];
+    float part;
+    bool busy = loader_busy(v->loader, doing, &part);
+    double now = glfwGetTime();
+    v->busy_since = !busy ? 0 : v->busy_since > 0 ? v->busy_since : now;
+    if (!v->next && !(busy && now - v->busy_since > soon))
+        return false;
+    if (ui_dialog("At work", v->picture, v->open, NULL)) {
+        ui_text_wrapped(busy ? doing : "building shaders: the window answers when they are there");
+        if (busy) {
+            ui_progress(part, NULL);
+            if (ui_button("Cancel (Esc)##work"))
+                loader_cancel(v->loader);
+        }
+    }
+    ui_panel_end();
+    return true;
+}
+
+/* Where a picture will be. */
+static void invite(const view *v) {
+    const char *const text = "Drop files here, or choose a scene at the left.";
+    const window_rect *p = &v->picture;
+    if (!v->open && v->panels)
+        ui_draw_text(true, (float)p->x + ((float)p->width - ui_text_width(text)) / 2,
+                     (float)p->y + (float)p->height / 2, 0xffa0a4a8, text);
 }
 
 /* "1 sample per pixel", or how many pixels there are while the view moves. */
@@ -145,24 +174,13 @@ static void status_line(const char *const *parts, int count, float width) {
     ui_text(text);
 }
 
-/* What goes on beside the window; "" for nothing. */
-static void tell_work(const view *v, char text[MESSAGE_SIZE + 32]) {
-    char doing[MESSAGE_SIZE];
-    float part;
-    bool busy = loader_busy(v->loader, doing, &part);
-    snprintf(text, MESSAGE_SIZE + 32, "%s", v->next ? "building shaders ..." : "");
-    if (busy)
-        snprintf(text, MESSAGE_SIZE + 32, "%s %.0f %% (Esc: cancel)", doing, 100 * (double)part);
-}
-
-static void status(const view *v, window_rect place) {
-    char work[MESSAGE_SIZE + 32], size[32] = "", samples[64] = "", time[64] = "", frame[32] = "";
-    const char *parts[] = {work, "", size, time, samples, frame};
+static void status(const view *v, window_rect place, bool narrow) {
+    char size[32] = "", samples[64] = "", time[64] = "", frame[32] = "";
+    const char *parts[] = {"", "nothing is open", size, time, samples, frame};
     float width;
-    tell_work(v, work);
-    if (!v->open && !*work)
-        parts[1] = "nothing is open";
-    if (v->open && !v->next) {
+    if (narrow)
+        parts[0] = "too narrow for the panels";
+    if (v->open) {
         parts[1] = v->compare ? "two pictures" : v->window.backend->title;
         snprintf(size, sizeof size, "%d x %d px", v->picture.width, v->picture.height);
         tell_samples(v, samples);
@@ -178,22 +196,31 @@ static void status(const view *v, window_rect place) {
     ui_panel_end();
 }
 
-void panel_draw(view *v) {
+/* Panels around the picture, which has what they leave. */
+static void surround(view *v) {
     int width = (int)(330 * ui_scale()), line = (int)(1.7f * ui_text_height());
     int timeline = v->open && player_timed(v) ? (int)(4.2f * ui_text_height()) : 0;
-    window_rect all = {0, 0, v->window.width, v->window.height}, before = v->picture;
-    bool shown = v->panels && all.width > 2 * width;
+    int below = v->picked.kind != PICKED_NOTHING ? (int)(9 * ui_text_height()) : 0;
+    window_rect all = {0, 0, v->window.width, v->window.height};
     v->picture = all;
-    if (shown) {
-        v->picture = (window_rect){width, 0, all.width - width, all.height - timeline - line};
-        bool any = v->picked.kind != PICKED_NOTHING;
-        int below = any ? (int)(9 * ui_text_height()) : 0;
-        left(v, (window_rect){0, 0, width, all.height - below});
-        picked_text(v, (window_rect){0, 0, width, all.height});
-        if (timeline)
-            player_panel(v, (window_rect){width, v->picture.height, v->picture.width, timeline});
-        status(v, (window_rect){width, all.height - line, v->picture.width, line});
-    }
+    if (!v->panels)
+        return;
+    bool narrow = all.width <= 2 * width;
+    if (narrow)
+        width = timeline = 0;
+    v->picture = (window_rect){width, 0, all.width - width, all.height - timeline - line};
+    status(v, (window_rect){width, all.height - line, v->picture.width, line}, narrow);
+    if (narrow)
+        return;
+    left(v, (window_rect){0, 0, width, all.height - below});
+    picked_text(v, (window_rect){0, 0, width, all.height});
+    if (timeline)
+        player_panel(v, (window_rect){width, v->picture.height, v->picture.width, timeline});
+}
+
+void panel_draw(view *v) {
+    window_rect before = v->picture;
+    surround(v);
     if (memcmp(&before, &v->picture, sizeof before) != 0)
         v->dirty = true;
     if (v->open)
@@ -202,7 +229,9 @@ void panel_draw(view *v) {
     marks_draw(v);
     if (v->compare)
         compare_marks(v);
+    invite(v);
     film_panel(v);
+    bool busy = work(v) || v->film.running;
     keys_dialog(v);
-    said(v);
+    said(v, busy);
 }

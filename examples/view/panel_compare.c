@@ -33,20 +33,25 @@ static void choose_image(view *v) {
     comparison *c = &v->comparison;
     char names[4096] = "";
     int chosen = 0, level = (int)c->level;
-    const lao_image_row *row;
+    const lao_image_row *row, *shown = NULL;
     for (uint32_t i = 0; (row = image_row(v, i)) != NULL; i++) {
         size_t used = strlen(names);
         snprintf(names + used, sizeof names - used, "%s%s", i ? "|" : "", row->name);
-        if (strcmp(row->name, c->image) == 0)
+        if (strcmp(row->name, c->image) == 0) {
             chosen = (int)i;
+            shown = row;
+        }
     }
     ui_width(-1);
     if (ui_combo("##image", &chosen, names) && (row = image_row(v, (uint32_t)chosen)) != NULL) {
         snprintf(c->image, sizeof c->image, "%s", row->name);
+        c->level = row->levels ? c->level : 0;
         v->dirty = true;
     }
     ui_help("any image of the frame graph; out is the picture. Numbers are shown between their "
             "least and greatest");
+    if (!shown || !shown->levels)
+        return;
     ui_width(-1);
     if (ui_combo("##level", &level,
                  "level 0|level 1|level 2|level 3|level 4|level 5|level 6|level 7")) {
@@ -56,19 +61,35 @@ static void choose_image(view *v) {
     ui_help("level of an image that has several");
 }
 
+/* Presets are of lines. */
+static bool has_presets(const view *v) {
+    bool has = false;
+    for (uint32_t i = 0; i < v->doc->settings_count; i++)
+        has = has || (v->doc->settings[i].module == lao_lines_module() &&
+                      document_offers(v->doc, i, LAO_SETTING_ID_preset));
+    return has;
+}
+
 static void choose_side(view *v, int side) {
     compare_look *look = &v->comparison.looks[side];
+    bool presets = has_presets(v);
     float width;
     ui_group(side);
     ui_widget_name(side ? "right" : "left");
     ui_text_dim(side ? "Right" : "Left");
     ui_width_left(&width);
-    ui_width(0.45f * width);
+    ui_width(presets ? 0.35f * width : -1);
     v->dirty = ui_combo("##backend", &look->backend, "OpenGL|Vulkan") || v->dirty;
-    ui_same_line();
-    ui_width(-1);
-    v->dirty = ui_combo("##preset", &look->preset, "settings as they are|default|classic|paper") ||
-               v->dirty;
+    if (presets) {
+        ui_same_line();
+        ui_width(-1);
+        v->dirty =
+            ui_combo("##preset", &look->preset, "settings as they are|default|classic|paper") ||
+            v->dirty;
+        ui_help("what the look of lines begins with; settings that were edited stay");
+    } else {
+        look->preset = 0;
+    }
     ui_widget_name(NULL);
     ui_group_end();
 }
@@ -77,7 +98,8 @@ static void choose_side(view *v, int side) {
 static bool setting_at(const view *v, int entry, int *index, int *setting) {
     for (uint32_t i = 0; i < v->doc->settings_count; i++) {
         for (uint32_t k = 0; k < v->doc->settings[i].module->setting_count; k++) {
-            if (document_needs(v->doc, i, (int)k) == NEEDS_NOTHING && entry-- == 0) {
+            if (document_offers(v->doc, i, (int)k) &&
+                document_needs(v->doc, i, (int)k) == NEEDS_NOTHING && entry-- == 0) {
                 *index = (int)i;
                 *setting = (int)k;
                 return true;
@@ -128,7 +150,7 @@ static void edit_setting(view *v) {
     if (looks->index < 0)
         return;
     const lao_setting_row *row = row_of(v, looks);
-    if (!ui_table("sides", 2))
+    if (!ui_table("sides", 2, 1))
         return;
     for (int side = 0; side < 2; side++) {
         ui_group(side);
@@ -180,12 +202,18 @@ static void pass_row(const lao_timing *of, const lao_timing *left, const lao_tim
 
 static void pass_times(const compare_result *const r[2]) {
     char text[64];
-    if (!ui_table("passes", 3))
+    if (!ui_table("passes", 3, 0))
         return;
+    ui_cell();
+    ui_text_dim("milliseconds");
+    for (int k = 0; k < 2; k++) {
+        ui_cell();
+        ui_text_dim(k ? "right" : "left");
+    }
     ui_cell();
     ui_text("frame");
     for (int k = 0; k < 2; k++) {
-        snprintf(text, sizeof text, "%.1f ms", r[k]->milliseconds);
+        snprintf(text, sizeof text, "%.2f", r[k]->milliseconds);
         ui_cell();
         ui_text(text);
     }
@@ -335,22 +363,38 @@ static const char *side_name(const view *v, int side, char text[SIDE_NAME]) {
     return text;
 }
 
+/* At the upper border of the picture, from `x` on. */
+static void draw_label(const view *v, float x, const char *text) {
+    float top = (float)v->picture.y, s = ui_scale();
+    ui_draw_box(true, x - 4 * s, top + 6 * s, x + ui_text_width(text) + 4 * s,
+                top + 8 * s + ui_text_height(), 0xc0202020);
+    ui_draw_text(true, x, top + 7 * s, 0xffffffff, text);
+}
+
+/* A black picture tells nothing by itself. */
+static void label_difference(const view *v) {
+    const comparison *c = &v->comparison;
+    char text[2 * SIDE_NAME + 32], left[SIDE_NAME], right[SIDE_NAME];
+    snprintf(text, sizeof text, "|%s - %s| x %.0f%s", side_name(v, 0, left), side_name(v, 1, right),
+             (double)c->gain, c->ready && c->count.bits == 0 ? ": no bit differs" : "");
+    draw_label(v, (float)v->picture.x + 12 * ui_scale(), text);
+}
+
 void compare_marks(view *v) {
     const comparison *c = &v->comparison;
     char text[SIDE_NAME];
     float x = (float)v->picture.x + (float)c->divider * (float)v->picture.width;
     float top = (float)v->picture.y, bottom = top + (float)v->picture.height, s = ui_scale();
-    if (c->difference)
+    if (c->difference) {
+        label_difference(v);
         return;
+    }
     ui_draw_line(true, x, top, x, bottom, 0xc0202020, 2 * s);
     ui_draw_disc(true, x, (top + bottom) / 2, 8 * s, 0xff202020);
     ui_draw_disc(true, x, (top + bottom) / 2, 5 * s, 0xffe09a4a);
     for (int side = 0; side < 2; side++) {
         side_name(v, side, text);
-        float wide = ui_text_width(text), at = side ? x + 12 * s : x - 12 * s - wide;
-        ui_draw_box(true, at - 4 * s, top + 6 * s, at + wide + 4 * s,
-                    top + 8 * s + ui_text_height(), 0xc0202020);
-        ui_draw_text(true, at, top + 7 * s, 0xffffffff, text);
+        draw_label(v, side ? x + 12 * s : x - 12 * s - ui_text_width(text), text);
     }
 }
 

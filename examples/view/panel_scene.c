@@ -41,7 +41,10 @@ static void open_line(view *v) {
 static void embedded(view *v) {
     uint32_t count;
     const char *const *names = scene_names(&count);
-    const char *const surfaces[] = {"aorta", "aneurysm", "liver", "bone"};
+    static const char *const surfaces[][2] = {{"aorta", "an arch with a bulge, and its flow"},
+                                              {"aneurysm", "a sac at a bend, and its flow"},
+                                              {"liver", "with a vein inside"},
+                                              {"bone", "a shaft with two heads"}};
     const char *words[3] = {"render", "--scene", NULL};
     ui_text_dim("Lines");
     ui_widget_name("lines");
@@ -56,14 +59,16 @@ static void embedded(view *v) {
     ui_widget_name("tree");
     if (ui_item("liver", false))
         open_words(v, words, 1);
+    ui_help("a grown tree of 3000 nodes");
     ui_text_dim("Surfaces");
     ui_group(1);
     words[0] = "surface";
     ui_widget_name("surface");
     for (int i = 0; i < 4; i++) {
-        words[2] = surfaces[i];
-        if (ui_item(surfaces[i], false))
+        words[2] = surfaces[i][0];
+        if (ui_item(surfaces[i][0], false))
             open_words(v, words, 3);
+        ui_help(surfaces[i][1]);
     }
     ui_widget_name(NULL);
     ui_group_end();
@@ -80,19 +85,21 @@ static void describe(view *v) {
     char text[512];
     for (uint32_t i = 0; i < scene->count; i++) {
         const cli_set *set = &scene->sets[i];
+        const char *name = document_file_name(set->name);
         if (set->tree) {
             const sdv_tree_info *info = &set->tree->vessel.tree.info;
-            snprintf(text, sizeof text, "%s: tree of %u nodes, %u segments, %u root%s", set->name,
+            snprintf(text, sizeof text, "%s: tree of %u nodes, %u segments, %u root%s", name,
                      info->nodes, info->segments, info->roots, info->roots == 1 ? "" : "s");
         } else if (set->wall) {
-            snprintf(text, sizeof text, "%s: surface of %u vertices, %u triangles", set->name,
+            snprintf(text, sizeof text, "%s: surface of %u vertices, %u triangles", name,
                      set->wall->mesh.vertex_count, set->wall->mesh.triangle_count);
         } else {
-            snprintf(text, sizeof text, "%s: %u lines, %u points%s%s", set->name,
-                     set->lines.line_count, set->lines.point_count,
-                     set->value ? ", coloured by " : "", set->value ? set->value : "");
+            snprintf(text, sizeof text, "%s: %u lines, %u points%s%s", name, set->lines.line_count,
+                     set->lines.point_count, set->value ? ", coloured by " : "",
+                     set->value ? set->value : "");
         }
         ui_text_wrapped(text);
+        ui_help(set->name);
         ui_group((int)i);
         if (can_go(v->doc, set) && ui_small_button("Take away"))
             stage_remove(v, set->source->path);
@@ -104,7 +111,7 @@ void panel_keys(void) {
     const char *key, *help;
     ui_text_wrapped("Drag: turn. Shift or middle button: move. Right button or wheel: nearer, "
                     "farther. Rest: what is there? Click: keep it, and do something with it.");
-    if (!ui_table("keys", 2))
+    if (!ui_table("keys", 2, 1))
         return;
     for (uint32_t i = 0; i < input_keys(UINT32_MAX, &key, &help); i++) {
         input_keys(i, &key, &help);
@@ -117,15 +124,6 @@ void panel_keys(void) {
 }
 
 void panel_scene(view *v) {
-    char text[MESSAGE_SIZE];
-    float part;
-    if (loader_busy(v->loader, text, &part)) {
-        ui_text_wrapped(text);
-        ui_progress(part, NULL);
-        if (ui_button("Cancel"))
-            loader_cancel(v->loader);
-        ui_line();
-    }
     if (v->open)
         describe(v);
     ui_space();

@@ -66,14 +66,21 @@ static void changed(view *v, uint32_t index, int setting) {
     stage_changed(v, strcmp(name, "width") == 0);
 }
 
+/* Is it one that the document has, and that is looked for? */
+static bool is_shown(const view *v, uint32_t index, int setting) {
+    const lao_setting_row *row = &v->doc->settings[index].module->settings[setting];
+    char label[64];
+    label_of(row, label);
+    return document_offers(v->doc, index, setting) &&
+           (!*v->filter || strstr(label, v->filter) || strstr(row->help, v->filter));
+}
+
 static void row_of(view *v, uint32_t index, int setting) {
     document *doc = v->doc;
     const lao_setting_row *row = &doc->settings[index].module->settings[setting];
     char label[64];
     float value = document_value(doc, index, setting);
     label_of(row, label);
-    if (*v->filter && !strstr(label, v->filter) && !strstr(row->help, v->filter))
-        return;
     ui_group(setting);
     ui_cell();
     ui_label(label);
@@ -105,6 +112,27 @@ static void reset_all(view *v) {
     }
 }
 
+/* The settings of one set; none where none is looked for. */
+static void section(view *v, uint32_t index) {
+    const document_settings *s = &v->doc->settings[index];
+    uint32_t count = s->module->setting_count, first = 0;
+    while (first < count && !is_shown(v, index, (int)first))
+        first++;
+    if (first == count)
+        return;
+    ui_group((int)index);
+    if (*v->filter)
+        ui_unfold();
+    if (ui_section(s->title, index == 0) && ui_table("rows", 3, 1)) {
+        for (uint32_t k = first; k < count; k++) {
+            if (is_shown(v, index, (int)k))
+                row_of(v, index, (int)k);
+        }
+        ui_table_end();
+    }
+    ui_group_end();
+}
+
 void panel_settings(view *v) {
     ui_width(-1);
     ui_input("##filter", v->filter, sizeof v->filter, "find a setting");
@@ -112,16 +140,7 @@ void panel_settings(view *v) {
     if (ui_small_button("Reset all"))
         reset_all(v);
     ui_scroll("settings", 0);
-    for (uint32_t i = 0; i < v->doc->settings_count; i++) {
-        ui_group((int)i);
-        if (*v->filter)
-            ui_unfold();
-        if (ui_section(v->doc->settings[i].title, i == 0) && ui_table("rows", 3)) {
-            for (uint32_t k = 0; k < v->doc->settings[i].module->setting_count; k++)
-                row_of(v, i, (int)k);
-            ui_table_end();
-        }
-        ui_group_end();
-    }
+    for (uint32_t i = 0; i < v->doc->settings_count; i++)
+        section(v, i);
     ui_scroll_end();
 }

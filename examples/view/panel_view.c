@@ -5,47 +5,76 @@
 
 #include <stdio.h>
 #include <stdlib.h>
+#include <string.h>
+
+/* A bookmark is kept by the first click, and returned to by the others. */
+static void bookmark(view *v, int i) {
+    char label[64];
+    snprintf(label, sizeof label, "%d%s##bookmark %d", i + 1, v->bookmarked[i] ? "" : "+", i + 1);
+    if (ui_small_button(label)) {
+        if (v->bookmarked[i])
+            v->shot.camera = v->bookmarks[i];
+        else
+            v->bookmarks[i] = v->shot.camera;
+        v->bookmarked[i] = true;
+        v->dirty = true;
+    }
+    ui_help(v->bookmarked[i] ? "go there" : "keep this view");
+}
+
+static void write_views(view *v, const camera_pose *poses, uint32_t count) {
+    char error[CAMERA_ERROR_SIZE];
+    if (camera_write_all(v->bookmark_path, poses, count, error))
+        trace(v, "saved %s", v->bookmark_path);
+    else
+        messages_add(v->messages, true, error);
+}
+
+static void read_views(view *v) {
+    char error[CAMERA_ERROR_SIZE];
+    camera_pose *poses;
+    uint32_t count;
+    if (!camera_read_all(v->bookmark_path, &poses, &count, error)) {
+        messages_add(v->messages, true, error);
+        return;
+    }
+    for (uint32_t i = 0; i < count && i < BOOKMARKS; i++) {
+        v->bookmarks[i] = poses[i];
+        v->bookmarked[i] = true;
+    }
+    v->shot.camera = poses[0];
+    v->dirty = true;
+    free(poses);
+}
 
 static void bookmarks(view *v) {
-    char label[64], error[CAMERA_ERROR_SIZE];
+    camera_pose kept[BOOKMARKS];
+    uint32_t count = 0;
     ui_text_dim("Bookmarks");
     for (int i = 0; i < BOOKMARKS; i++) {
-        snprintf(label, sizeof label, "%d%s##bookmark %d", i + 1, v->bookmarked[i] ? "" : "+",
-                 i + 1);
         if (i)
             ui_same_line();
-        if (ui_small_button(label)) {
-            if (v->bookmarked[i])
-                v->shot.camera = v->bookmarks[i];
-            else
-                v->bookmarks[i] = v->shot.camera;
-            v->bookmarked[i] = true;
-            v->dirty = true;
-        }
-        ui_help(v->bookmarked[i] ? "go there" : "keep this view");
+        bookmark(v, i);
+        if (v->bookmarked[i])
+            kept[count++] = v->bookmarks[i];
     }
     ui_width(-1);
     ui_input("##bookmark file", v->bookmark_path, sizeof v->bookmark_path, "camera.json");
-    if (ui_button("Save view") && camera_write(v->bookmark_path, &v->shot.camera, error))
-        trace(v, "saved %s", v->bookmark_path);
-    ui_help("as a file for --camera");
+    if (ui_button("Save view"))
+        write_views(v, &v->shot.camera, 1);
+    ui_help("this view as a file for --camera");
     ui_same_line();
-    if (ui_button("Load views")) {
-        camera_pose *poses;
-        uint32_t count;
-        if (!camera_read_all(v->bookmark_path, &poses, &count, error)) {
-            messages_add(v->messages, true, error);
-        } else {
-            for (uint32_t i = 0; i < count && i < BOOKMARKS; i++) {
-                v->bookmarks[i] = poses[i];
-                v->bookmarked[i] = true;
-            }
-            v->shot.camera = poses[0];
-            v->dirty = true;
-            free(poses);
-        }
-    }
-    ui_help("one camera or an array of them");
+    if (ui_button("Load views"))
+        read_views(v);
+    ui_help("one camera or an array of them, as bookmarks from 1 on");
+    if (!count)
+        return;
+    if (ui_button("Save bookmarks"))
+        write_views(v, kept, count);
+    ui_help("as a file for --cameras");
+    ui_same_line();
+    if (ui_button("Forget bookmarks"))
+        memset(v->bookmarked, 0, sizeof v->bookmarked);
 }
 
 void panel_view(view *v) {
@@ -101,12 +130,13 @@ void panel_save(view *v) {
     ui_width_left(&width);
     ui_width(0.36f * width);
     ui_slider_int("##wide", &v->shot_size[0], 16, 8192, "%d");
+    ui_help("pixels; Ctrl and a click: type the number");
     ui_same_line();
     ui_label("x");
     ui_same_line();
     ui_width(0.36f * width);
     ui_slider_int("##high", &v->shot_size[1], 16, 8192, "%d");
-    ui_help("Ctrl and a click: type the number");
+    ui_help("pixels; Ctrl and a click: type the number");
     if (ui_button("As in the window")) {
         v->shot_size[0] = v->picture.width;
         v->shot_size[1] = v->picture.height;

@@ -1,6 +1,8 @@
 /* What is known of what was picked: once, for tips, the panel and JSON. */
 #include "document.h"
 
+#include "legends.h"
+
 #include <cJSON.h>
 #include <math.h>
 #include <stdio.h>
@@ -35,7 +37,8 @@ static double length_of(const float *points, uint32_t count) {
 
 static void add_rows(picked *out, const io_attribute *list, uint32_t count, size_t row) {
     for (uint32_t i = 0; i < count && i < 5; i++) {
-        picked_fact *fact = add(out, list[i].name, "", list[i].components);
+        const char *unit = cli_attribute_unit(list[i].name);
+        picked_fact *fact = add(out, list[i].name, unit ? unit : "", list[i].components);
         for (uint32_t k = 0; k < fact->count; k++)
             fact->values[k] = (double)list[i].data[row * list[i].components + k];
     }

@@ -109,9 +109,11 @@ void player_panel(view *v, window_rect place) {
     ui_disable(v->film.running);
     if (ui_button(v->player.playing ? "Pause##play" : "Play##play"))
         player_toggle(v);
+    ui_help("(Space)");
     ui_same_line();
     if (ui_button("Stop"))
         player_stop(v);
+    ui_help("back to the first time");
     ui_same_line();
     if (ui_button("<##back"))
         player_step(v, -1);
@@ -123,11 +125,14 @@ void player_panel(view *v, window_rect place) {
     ui_same_line();
     if (ui_button("Slower"))
         player_pace(v, 1 / 1.5);
+    ui_help("(comma)");
     ui_same_line();
     if (ui_button("Faster"))
         player_pace(v, 1.5);
+    ui_help("(full stop)");
     ui_same_line();
     ui_toggle("Loop", &v->player.loop);
+    ui_help("again and again, or once (L)");
     if (v->doc->command == CLI_RENDER) {
         ui_same_line();
         if (ui_toggle("Trails", &shown)) {

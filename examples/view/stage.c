@@ -168,15 +168,25 @@ static void corner_of(const view *v, float corner[3]) {
         corner[k] = up[k] < 0 ? v->bounds[1][k] : v->bounds[0][k];
 }
 
+static const float axis_colors[3][4] = {
+    {0.80f, 0.30f, 0.25f, 1}, {0.36f, 0.62f, 0.30f, 1}, {0.25f, 0.42f, 0.80f, 1}};
+
+const float *stage_axis(const view *v, int k, double end[3]) {
+    float corner[3];
+    corner_of(v, corner);
+    for (int i = 0; i < 3; i++)
+        end[i] = v->doc->scene->origin[i] + (double)corner[i];
+    end[k] += 0.5 * (double)v->shot.sphere[3];
+    return axis_colors[k];
+}
+
 static void make_axes(const view *v, const float clip[16], window_box bars[3]) {
-    static const float colors[3][4] = {
-        {0.80f, 0.30f, 0.25f, 1}, {0.36f, 0.62f, 0.30f, 1}, {0.25f, 0.42f, 0.80f, 1}};
     float corner[3], radius = v->shot.sphere[3], thick = 0.006f * radius;
     corner_of(v, corner);
     memset(bars, 0, 3 * sizeof *bars);
     for (int i = 0; i < 3; i++) {
         memcpy(bars[i].clip, clip, sizeof bars[i].clip);
-        memcpy(bars[i].color, colors[i], sizeof colors[i]);
+        memcpy(bars[i].color, axis_colors[i], sizeof axis_colors[i]);
         for (int k = 0; k < 3; k++) {
             bars[i].lower[k] = corner[k] - thick;
             bars[i].upper[k] = corner[k] + (i == k ? 0.5f * radius : thick);
@@ -334,7 +344,8 @@ void stage_draw(view *v) {
     cli_shot shot = v->shot;
     bool small = v->steady.on && v->steady.moving;
     double scale = small ? (double)v->steady.scale : 1;
-    if (!v->open || !v->dirty || v->picture.width < 1 || v->picture.height < 1)
+    v->dirty = v->dirty && v->open; /* there is nothing to draw, and nothing to stay awake for */
+    if (!v->dirty || v->picture.width < 1 || v->picture.height < 1)
         return;
     shot.width = (uint32_t)fmax(1, round(v->picture.width * scale));
     shot.height = (uint32_t)fmax(1, round(v->picture.height * scale));

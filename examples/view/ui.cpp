@@ -203,16 +203,17 @@ void ui_panel_end(void) {
     ImGui::End();
 }
 
-bool ui_dialog(const char *name, window_rect at, bool *open) {
-    ImGui::SetNextWindowPos(
-        ImVec2((float)at.x + (float)at.width * 0.5f, (float)at.y + (float)at.height * 0.5f),
-        ImGuiCond_Always, ImVec2(0.5f, 0.5f));
-    ImGui::SetNextWindowSizeConstraints(ImVec2((float)at.width * 0.5f, 0),
-                                        ImVec2((float)at.width, (float)at.height));
-    bool shown = ImGui::Begin(name, open,
-                              ImGuiWindowFlags_NoCollapse | ImGuiWindowFlags_AlwaysAutoResize |
-                                  ImGuiWindowFlags_NoSavedSettings);
-    return shown;
+bool ui_dialog(const char *name, window_rect at, bool below, bool *open) {
+    float border = below ? ImGui::GetFontSize() * 0.5f : 0, part = below ? 1 : 0.5f;
+    float width = ImGui::GetFontSize() * 36; /* lines longer than that are hard to read */
+    width = width < (float)at.width ? width : (float)at.width;
+    ImGui::SetNextWindowPos(ImVec2((float)at.x + (float)at.width * 0.5f,
+                                   (float)at.y + (float)at.height * part - border),
+                            ImGuiCond_Always, ImVec2(0.5f, part));
+    ImGui::SetNextWindowSizeConstraints(ImVec2(width, 0), ImVec2(width, (float)at.height));
+    return ImGui::Begin(name, open,
+                        ImGuiWindowFlags_NoCollapse | ImGuiWindowFlags_AlwaysAutoResize |
+                            ImGuiWindowFlags_NoSavedSettings);
 }
 
 void ui_scroll(const char *name, float height) {
@@ -397,9 +398,17 @@ void ui_width_left(float *width) {
     *width = ImGui::GetContentRegionAvail().x;
 }
 
-bool ui_table(const char *name, int columns) {
-    return ImGui::BeginTable(name, columns,
-                             ImGuiTableFlags_RowBg | ImGuiTableFlags_SizingStretchProp);
+bool ui_table(const char *name, int columns, int widest) {
+    if (!ImGui::BeginTable(name, columns, ImGuiTableFlags_RowBg | ImGuiTableFlags_SizingFixedFit))
+        return false;
+    float button = ImGui::CalcTextSize("x").x + 2 * ImGui::GetStyle().FramePadding.x;
+    for (int i = 0; i < columns; i++) {
+        bool wide = i == widest;
+        ImGui::TableSetupColumn(
+            "", wide ? ImGuiTableColumnFlags_WidthStretch : ImGuiTableColumnFlags_WidthFixed,
+            i == columns - 1 && !wide ? button : 0);
+    }
+    return true;
 }
 
 void ui_cell(void) {

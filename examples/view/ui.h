@@ -43,8 +43,9 @@ bool ui_active(void);
 /* A panel of fixed place. */
 void ui_panel(const char *name, window_rect place);
 void ui_panel_end(void);
-/* A window over all else, in the middle of that place; *open becomes false when it is closed. */
-bool ui_dialog(const char *name, window_rect place, bool *open);
+/* A window over all else, in the middle of that place or at its lower border; *open becomes false
+ * when it is closed; NULL: it cannot be. */
+bool ui_dialog(const char *name, window_rect place, bool below, bool *open);
 /* A part that scrolls by itself; height 0: the rest. */
 void ui_scroll(const char *name, float height);
 void ui_scroll_end(void);
@@ -91,8 +92,9 @@ void ui_space(void);
 void ui_line(void);
 void ui_width(float width);       /* of the next widget; negative: up to that far from the border */
 void ui_width_left(float *width); /* of the panel */
-/* Rows of `columns` cells. */
-bool ui_table(const char *name, int columns);
+/* Rows of `columns` cells, each as wide as what it holds but for one, which takes the rest; the
+ * last is never narrower than a small button of one letter. */
+bool ui_table(const char *name, int columns, int widest);
 void ui_cell(void);
 void ui_table_end(void);
 void ui_disable(bool disabled);

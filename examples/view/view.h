@@ -103,6 +103,7 @@ typedef struct view {
     bool keys;                   /* their list is shown */
     bool unfitted;               /* the camera has not been fitted into the window */
     int awake;                   /* frames of the user interface still to be drawn */
+    double busy_since;           /* s; 0: the loader is not at work */
     bool ground, axes, turntable, panels, quit;
     double frame_ms; /* of the last frame that built no shaders; 0: none */
     bool warm;       /* they are built */
@@ -165,8 +166,10 @@ void stage_add(view *v, const char *const *files, uint32_t count);
 void stage_remove(view *v, const char *file);
 /* Where a place (mm, absolute) is in the window. False: behind the eye. */
 bool stage_place(const view *v, const double at[3], float place[2]);
-/* Of the whole document: its middle (absolute) and the axis that is up. */
+/* The axis of the document that is up. */
 void stage_up(const view *v, double axis[3]);
+/* Where the axes that are drawn end (mm, absolute), and their colour, three parts of 0..1. */
+const float *stage_axis(const view *v, int k, double end[3]);
 
 /* ---- input.c ---- */
 

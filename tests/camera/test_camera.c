@@ -87,6 +87,80 @@ static void framing_is_tight(void **state) {
     }
 }
 
+/* How far balls are inside the picture but for its margin when the camera of a turn has gone `part`
+ * of it: the least distance to the four planes through the eye, or two pairs of parallel ones. */
+static double room_in_turn(const camera_pose *camera, double part, double aspect, double margin,
+                           const float *balls, int count) {
+    double ahead[3], side[3], away = 0.0, least = 1e9;
+    const double *up = camera->up;
+    for (int k = 0; k < 3; k++)
+        away += pow(camera->center[k] - camera->eye[k], 2.0);
+    away = sqrt(away);
+    for (int k = 0; k < 3; k++)
+        ahead[k] = (camera->center[k] - camera->eye[k]) / away;
+    for (int k = 0; k < 3; k++)
+        side[k] = ahead[(k + 1) % 3] * up[(k + 2) % 3] - ahead[(k + 2) % 3] * up[(k + 1) % 3];
+    double c = cos(6.283185307179586 * part), s = sin(6.283185307179586 * part);
+    double slope = (1.0 - margin) * tan(0.5 * camera->fovy * 0.017453292519943295);
+    for (int i = 0; i < count; i++) {
+        double x = 0.0, y = 0.0, z = 0.0;
+        for (int k = 0; k < 3; k++) {
+            double to = (double)balls[4 * i + k] - camera->center[k];
+            x += to * side[k];
+            y += to * up[k];
+            z += to * ahead[k];
+        }
+        double across[2] = {fabs(c * x + s * z), fabs(y)}, deep = away + c * z - s * x;
+        for (int k = 0; k < 2; k++) {
+            double steep = slope * (k ? 1.0 : aspect), rim = sqrt(1.0 + steep * steep);
+            double room = (steep * deep - across[k]) / rim;
+            if (!(camera->fovy > 0.0))
+                room = 0.5 * (1.0 - margin) * camera->ortho_height * (k ? 1.0 : aspect) - across[k];
+            least = fmin(least, room - (double)balls[4 * i + 3]);
+        }
+    }
+    return least;
+}
+
+static void a_turn_is_framed_whole_and_tightly(void **state) {
+    (void)state;
+    enum { COUNT = 60, STEPS = 720 };
+    uint32_t seed = 3;
+    for (int trial = 0; trial < 60; trial++) {
+        float balls[4 * COUNT], direction[3], up[3], tall = trial % 2 ? 90.0f : 8.0f;
+        for (int i = 0; i < COUNT; i++) {
+            balls[4 * i] = 40.0f * next(&seed) + 100.0f;
+            balls[4 * i + 1] = 3.0f * next(&seed);
+            balls[4 * i + 2] = tall * next(&seed) - 7.0f;
+            balls[4 * i + 3] = fabsf(4.0f * next(&seed));
+        }
+        balls[7] = (float)NAN; /* must not count */
+        for (int i = 0; i < 3; i++) {
+            direction[i] = next(&seed);
+            up[i] = next(&seed);
+        }
+        const double aspect = trial % 3 == 0 ? 0.5 : trial % 3 == 1 ? 1.0 : 16.0 / 9.0;
+        const double fovy = trial % 4 == 0 ? 0.0 : trial % 4 == 1 ? 50.0 : 30.0, margin = 0.05;
+        camera_fit fit;
+        camera_orbit orbit;
+        camera_pose camera;
+        double least = 1e9;
+        camera_fit_begin(&fit, direction, up, aspect, margin, fovy);
+        for (int i = 0; i < COUNT; i++)
+            camera_fit_add(&fit, balls + 4 * i, 1);
+        camera_orbit_begin(&orbit, &fit);
+        camera_orbit_add(&orbit, balls, 4, COUNT / 2);
+        camera_orbit_add(&orbit, balls + 4 * (COUNT / 2), 4, COUNT - COUNT / 2);
+        camera_orbit_end(&orbit, &camera);
+        balls[7] = -1e6f; /* of no size at all */
+        for (int step = 0; step < STEPS; step++)
+            least = fmin(least,
+                         room_in_turn(&camera, (double)step / STEPS, aspect, margin, balls, COUNT));
+        assert_true(least > -1e-4);
+        assert_true(least < 0.02); /* of 80 to 180 mm: what lies between two steps */
+    }
+}
+
 static void framing_survives_anything(void **state) {
     (void)state;
     const float zero[3] = {0, 0, 0}, up[3] = {0, 0, 1};
@@ -106,6 +180,18 @@ static void framing_survives_anything(void **state) {
                 far += fabs(camera.eye[a] - camera.center[a]);
             }
             assert_true(far > 1e-3);
+            camera_fit fit;
+            camera_orbit orbit;
+            camera_fit_begin(&fit, k ? up : zero, up, 1.5, 0.05, 30.0 * k);
+            camera_fit_add(&fit, sets[i].points, sets[i].count);
+            camera_orbit_begin(&orbit, &fit);
+            camera_orbit_add(&orbit, sets[i].points, 3, sets[i].count);
+            camera_orbit_end(&orbit, &camera);
+            assert_true(k || camera.ortho_height > 1e-3);
+            far = 0.0;
+            for (int a = 0; a < 3; a++)
+                far += fabs(camera.eye[a] - camera.center[a]);
+            assert_true(isfinite(far) && far > 1e-3);
             float view[16], projection[16];
             camera_matrices(&camera, 1.5, camera.center, 0.0, true, view, projection);
             for (int a = 0; a < 16; a++)
@@ -182,13 +268,7 @@ static void files_round_trip(void **state) {
         assert_memory_equal(all, &written[i], sizeof read);
         free(all);
     }
-    FILE *file = fopen(path, "w");
-    assert_non_null(file);
-    char *first = camera_print(&written[0]), *second = camera_print(&written[1]);
-    fprintf(file, "[%s,\n%s]", first, second);
-    fclose(file);
-    free(first);
-    free(second);
+    assert_true(camera_write_all(path, written, 2, error));
     camera_pose *all = NULL;
     uint32_t count = 0;
     assert_true(camera_read_all(path, &all, &count, error));
@@ -245,6 +325,7 @@ static void bad_cameras_are_explained(void **state) {
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(framing_is_tight),
+        cmocka_unit_test(a_turn_is_framed_whole_and_tightly),
         cmocka_unit_test(framing_survives_anything),
         cmocka_unit_test(matrices_keep_the_conventions),
         cmocka_unit_test(views_are_named),

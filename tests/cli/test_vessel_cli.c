@@ -414,6 +414,37 @@ static void read_pixels(const char *path, pixels *out) {
         fail_msg("%s", error);
 }
 
+/* No frame of a turn touches its rim; a single picture is framed as ever. */
+static void test_turn(void **state) {
+    (void)state;
+    expect_ok(RUN("vessel y.swc --unit mm " SMALL "--style plain --frames 8 -o t%%d.png"));
+    for (int frame = 0; frame < 8; frame++) {
+        char path[16];
+        pixels p;
+        snprintf(path, sizeof path, "t%d.png", frame);
+        read_pixels(path, &p);
+        size_t w = (size_t)p.width, h = (size_t)p.height, inked = 0;
+        for (size_t i = 0; i < w * h; i++) {
+            bool rim = i % w == 0 || i % w == w - 1 || i < w || i >= w * (h - 1);
+            bool paper = memcmp(p.rgb + 3 * i, p.rgb, 3) == 0;
+            assert_true(paper || !rim);
+            inked += !paper;
+        }
+        assert_true(inked > w * h / 40);
+        free(p.rgb);
+    }
+    const char *names[] = {"", "--frames 1 ", "--frames 2 "};
+    char *texts[3];
+    for (int i = 0; i < 3; i++) {
+        expect_ok(RUN("vessel y.swc --unit mm " SMALL "%s--save-camera turn.json", names[i]));
+        texts[i] = read_text("turn.json");
+    }
+    assert_string_equal(texts[0], texts[1]);
+    assert_string_not_equal(texts[0], texts[2]);
+    for (int i = 0; i < 3; i++)
+        free(texts[i]);
+}
+
 /* The layout drawn by the backend, beside the picture and without one: the same for both backends,
  * whatever the camera; where the trunk is, its colour. */
 static void test_layout_picture(void **state) {
@@ -614,6 +645,25 @@ static void test_legend(void **state) {
     assert_in_range(differing(&with, &without, 150, 0, 138, 216), 500, 20000);
     free(with.rgb);
     free(without.rgb);
+    /* all commands say once what a small picture has no room for: as a line, or in the report */
+    const char *commands[] = {"vessel y.swc --unit mm --grid 48 --color radius --json",
+                              "vessel y.swc --unit mm --grid 48 --color radius --frames 2",
+                              "vessel y.swc --unit mm --color radius --layout out.png",
+                              "surface --scene aneurysm --json",
+                              "surface --scene aneurysm --frames 2",
+                              "render --scene flow --lines 20 --color speed"};
+    for (size_t i = 0; i < sizeof commands / sizeof *commands; i++) {
+        bool json = strstr(commands[i], "--json") != NULL, layout = strstr(commands[i], "--layout");
+        program_run run = RUN("%s --legend right --size 64x48 --ssaa 1 %s", commands[i],
+                              layout ? "" : "-o out.png");
+        const char *note = strstr(json ? run.out : run.err, "no room for");
+        assert_int_equal(run.code, 0);
+        assert_non_null(note);
+        assert_null(strstr(note + 1, "no room for"));
+        assert_true(!json || !*run.err);
+        assert_true(json || strncmp(run.err, "lineao: out.png: warning: no room", 33) == 0);
+        program_free(&run);
+    }
     expect_fault(RUN("vessel " Y "--legend left -o never.png"), 1, "--legend");
     assert_false(exists("never.png"));
 }
@@ -780,6 +830,7 @@ int main(int argc, char **argv) {
         cmocka_unit_test(test_layout_and_tree),
         cmocka_unit_test(test_path),
         cmocka_unit_test(test_cameras),
+        cmocka_unit_test(test_turn),
         cmocka_unit_test(test_layout_picture),
         cmocka_unit_test(test_device_field),
         cmocka_unit_test(test_looks),

@@ -281,19 +281,10 @@ static void vulkan_gives_the_bits_of_c(void **state) {
         lao_frame frame;
         lao_context *context;
         VkCommandBuffer commands;
-        PFN_vkGetInstanceProcAddr get;
         if (!host_vk_open(NULL, &vk, error)) {
             no_gpu(error);
         }
-        memset(&desc, 0, sizeof desc);
-        desc.instance = host_vk_instance(vk);
-        desc.physical_device = host_vk_physical(vk);
-        desc.device = host_vk_device(vk);
-        get = host_vk_get_instance_proc(vk);
-        memcpy(&desc.get_instance_proc, &get, sizeof get);
-        desc.api_version = host_vk_api_version(vk);
-        desc.queue_family = host_vk_family(vk);
-        desc.queue = host_vk_queue(vk);
+        desc = host_vk_lend(vk);
         assert_int_equal(lao_vk_backend(&desc, &backend), LAO_OK);
         context = context_make(&backend, &host, &frame);
         commands = host_vk_begin(vk);

@@ -130,13 +130,6 @@ int render_open_gl(render_device *device, void *(*get_proc)(const char *name, vo
     return open_context(device, &backend);
 }
 
-static void *instance_proc(void *instance, const char *name) {
-    PFN_vkVoidFunction function = vkGetInstanceProcAddr((VkInstance)instance, name);
-    void *data;
-    memcpy(&data, &function, sizeof data);
-    return data;
-}
-
 int render_open_vk(render_device *device, uint32_t api_version) {
     char error[HOST_VK_ERROR_SIZE];
     host_vk_desc host;
@@ -151,14 +144,7 @@ int render_open_vk(render_device *device, uint32_t api_version) {
         return 0;
     }
     device->software = strstr(host_vk_name(device->vk), "llvmpipe") != NULL;
-    memset(&desc, 0, sizeof desc);
-    desc.instance = host_vk_instance(device->vk);
-    desc.physical_device = host_vk_physical(device->vk);
-    desc.device = host_vk_device(device->vk);
-    desc.get_instance_proc = instance_proc;
-    desc.api_version = host_vk_api_version(device->vk);
-    desc.queue_family = host_vk_family(device->vk);
-    desc.queue = host_vk_queue(device->vk);
+    desc = host_vk_lend(device->vk);
     if (lao_vk_backend(&desc, &backend) != LAO_OK)
         return 0;
     spy.vk = backend.execute;

@@ -112,6 +112,9 @@ static void keeps_views(desktop *d) {
     user_clicks(d, "1+##bookmark 1");
     user_clicks(d, "Save view");
     assert_string_equal(viewer_hears(d, "saved "), "camera.json");
+    viewer_rests(d);                  /* what a bookmark allows is there */
+    user_clicks(d, "Save bookmarks"); /* which is that view */
+    assert_string_equal(viewer_hears(d, "saved "), "camera.json");
     user_types(d, "3");
     user_types(d, "c");
     assert_string_not_equal(strstr(viewer_hears(d, "command "), " --camera "), camera);
@@ -841,17 +844,19 @@ static void shows_lines(void **state) {
     quit(f);
 }
 
-/* On a monitor of twice the pixels per inch everything is twice as large, unless told. */
+/* On a monitor of twice the pixels per inch everything is twice as large, unless told; so is the
+ * window, as far as there is room. */
 static void follows_the_monitor(void **state) {
     fixture *f = *state;
-    const char *words[] = {"--backend", f->backend, "--window", "1500x500",   "render", "--scene",
-                           "crossing",  "--lines",  "50",       NO_OCCLUSION, NULL};
+    const char *words[] = {"--backend", f->backend, "render",     "--scene", "crossing",
+                           "--lines",   "50",       NO_OCCLUSION, NULL};
+    static const char *const sizes[2] = {" 950x768 ok", " 940x936 ok"}; /* of the picture */
     int heights[2];
     for (int i = 0; i < 2; i++) {
         int place[4];
         desktop_resolution(f->desktop, i ? 192 : 96);
         viewer_start(f->desktop, viewer, words);
-        viewer_hears(f->desktop, "frame");
+        assert_non_null(strstr(viewer_hears(f->desktop, "frame"), sizes[i]));
         user_sees(f->desktop, "Scene", place);
         heights[i] = place[3];
         quit(f);

@@ -45,15 +45,10 @@ lao_result fixture_context(fixture *f, int queue, lao_context **context) {
     lao_vk_desc vk;
     lao_backend backend;
     lao_desc desc;
-    memset(&vk, 0, sizeof vk);
-    vk.instance = host_vk_instance(f->host);
-    vk.physical_device = host_vk_physical(f->host);
-    vk.device = host_vk_device(f->host);
+    vk = host_vk_lend(f->host);
     vk.get_instance_proc = vk_wrap_proc;
     vk.debug_utils = 1; /* the host enables it with the validation layer */
-    vk.api_version = host_vk_api_version(f->host);
-    vk.queue_family = host_vk_family(f->host);
-    vk.queue = queue ? host_vk_queue(f->host) : NULL;
+    vk.queue = queue ? vk.queue : NULL;
     vk.frames_in_flight = FIXTURE_FRAMES;
     assert_int_equal(lao_vk_backend(&vk, &backend), LAO_OK);
     memset(&desc, 0, sizeof desc);
