@@ -1,5 +1,5 @@
 #!/bin/sh
-# Makes sdfvessel.h, vesselsurface.h and flow4d.h (their parts joined), lineao_shaders.h, sdfvessel_shaders.h and
+# Makes lineao.h, sdfvessel.h, vesselsurface.h and flow4d.h (their parts joined), lineao_shaders.h, sdfvessel_shaders.h and
 # vesselsurface_shaders.h (GLSL lines and SPIR-V words of every pass of a module, from the headers' shared text and shaders/),
 # dist/lineao_all.h (core, line shaders and executors in one file), and the generated parts of README.md and
 # docs/algorithm.md. The same inputs give the same bytes: no clock, no locale, no paths.
@@ -13,9 +13,10 @@ export LC_ALL
 cd "$(dirname "$0")"
 
 # Headers that are written in parts/HEADER/, and the order of their parts.
-JOINED="sdfvessel vesselsurface flow4d"
+JOINED="lineao sdfvessel vesselsurface flow4d"
 parts_of() {
     case $1 in
+        lineao) echo "interface seam shared_math shared_lines shared_occlusion host tables settings graph plan context lines object frame read null_backend" ;;
         sdfvessel) echo "interface shared_field shared_shape shared_screen host tree layout grid grid_update trace target pull_push module object" ;;
         vesselsurface) echo "interface shared host triangle mesh smooth decimate measure feature_lines near_search near module" ;;
         flow4d) echo "interface host field trace volume" ;;

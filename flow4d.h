@@ -324,30 +324,19 @@ FLOW4D_API void flow4d_surface_free(flow4d_surface *surface);
 #endif /* FLOW4D_H */
 
 /* ================================================================================================
- * host: failures, memory and work, as the host wants them; sizes and affine maps of lattices. The
-   implementation begins here and ends with the last section; all of it uses the interface. */
+ * host: failures and work, as the host wants them; sizes and affine maps of lattices. Memory comes
+   from lineao.h (its section host). The implementation begins here and ends with the last section;
+   all of it uses the interface and lineao.h's host. */
 #ifdef FLOW4D_IMPLEMENTATION
 #ifndef FLOW4D_IMPLEMENTATION_DONE
 #define FLOW4D_IMPLEMENTATION_DONE
 
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
+#define LAO__HOST
+#include "lineao.h"
 
 #ifdef __cplusplus
 extern "C" {
 #endif
-
-static void *flow4d__default_allocate(void *user, size_t size) {
-    (void)user;
-    return malloc(size);
-}
-
-static void flow4d__default_release(void *user, void *memory, size_t size) {
-    (void)user;
-    (void)size;
-    free(memory);
-}
 
 /* The host with an allocator that works. */
 static flow4d_host flow4d__host(const flow4d_host *host) {
@@ -356,32 +345,8 @@ static flow4d_host flow4d__host(const flow4d_host *host) {
     if (host) {
         h = *host;
     }
-    if (!h.allocator.allocate || !h.allocator.release) {
-        h.allocator.allocate = flow4d__default_allocate;
-        h.allocator.release = flow4d__default_release;
-        h.allocator.user = NULL;
-    }
+    h.allocator = lao__allocator_or_default(&h.allocator);
     return h;
-}
-
-/* Zeroed memory for count items; NULL for none, on overflow or when there is no memory. */
-static void *flow4d__new(const lao_allocator *allocator, size_t count, size_t size) {
-    void *memory;
-    if (count == 0 || count > (size_t)-1 / size) {
-        return NULL;
-    }
-    memory = allocator->allocate(allocator->user, count * size);
-    if (memory) {
-        memset(memory, 0, count * size);
-    }
-    return memory;
-}
-
-static void flow4d__delete(const lao_allocator *allocator, void *memory, size_t count,
-                           size_t size) {
-    if (memory) {
-        allocator->release(allocator->user, memory, count * size);
-    }
 }
 
 static lao_result flow4d__fail(const flow4d_host *host, flow4d_log_item item, const char *detail) {
@@ -407,23 +372,6 @@ static lao_result flow4d__setting_fail(const flow4d_host *host, const char *name
     return flow4d__fail(host, FLOW4D_LOG_SETTING, text);
 }
 
-static void flow4d__run(const flow4d_host *host, uint32_t count, void (*fn)(void *, uint32_t),
-                        void *arg) {
-    uint32_t i;
-    if (host->job.run) {
-        host->job.run(host->job.user, count, fn, arg);
-        return;
-    }
-    for (i = 0; i < count; i++) {
-        fn(arg, i);
-    }
-}
-
-/* Not 0: the host wants no more. */
-static int flow4d__progress(const flow4d_host *host, uint64_t done, uint64_t total) {
-    return host->job.progress && host->job.progress(host->job.user, done, total);
-}
-
 typedef struct flow4d__part {
     void (*fn)(void *arg, size_t index);
     void *arg;
@@ -444,9 +392,9 @@ static lao_result flow4d__work(const flow4d_host *host, const char *name, size_t
     for (part.first = 0; part.first < count;) {
         size_t left = count - part.first;
         uint32_t now = left < 64 ? (uint32_t)left : 64u;
-        flow4d__run(host, now, flow4d__part_run, &part);
+        lao__job_run(&host->job, now, flow4d__part_run, &part);
         part.first += now;
-        if (flow4d__progress(host, part.first, count)) {
+        if (lao__job_cancelled(&host->job, part.first, count)) {
             return flow4d__fail(host, FLOW4D_LOG_CANCELLED, name);
         }
     }
@@ -1125,7 +1073,7 @@ static lao_result flow4d__rows_make(const flow4d_host *host, const flow4d_field 
     if (!field->mask || mode == FLOW4D_MASK_NONE) {
         return LAO_OK;
     }
-    rows->before = (uint64_t *)flow4d__new(&host->allocator, rows->count, sizeof(uint64_t));
+    rows->before = (uint64_t *)lao__new(&host->allocator, rows->count, sizeof(uint64_t));
     if (!rows->before) {
         return flow4d__fail(host, FLOW4D_LOG_MEMORY, "rows of the mask");
     }
@@ -1239,7 +1187,7 @@ static int flow4d__points_make(const flow4d_host *host, uint32_t attributes, siz
     if (count == 0) {
         return 0;
     }
-    points->memory = (float *)flow4d__new(&host->allocator, count, floats * sizeof(float));
+    points->memory = (float *)lao__new(&host->allocator, count, floats * sizeof(float));
     if (!points->memory) {
         return -1;
     }
@@ -1258,8 +1206,8 @@ static int flow4d__points_make(const flow4d_host *host, uint32_t attributes, siz
 
 static void flow4d__points_free(const flow4d_host *host, uint32_t attributes,
                                 flow4d__points *points) {
-    flow4d__delete(&host->allocator, points->memory, points->count,
-                   flow4d__floats(attributes) * sizeof(float));
+    lao__delete(&host->allocator, points->memory, points->count,
+                flow4d__floats(attributes) * sizeof(float));
     memset(points, 0, sizeof *points);
 }
 
@@ -1473,7 +1421,8 @@ static lao_result flow4d__batch(const flow4d_host *host, flow4d__trace *trace,
                                 flow4d__points *packed) {
     uint32_t i;
     size_t count = 0, where = 0;
-    flow4d__run(host, (trace->now + FLOW4D__CHUNK - 1) / FLOW4D__CHUNK, flow4d__chunk, trace);
+    lao__job_run(&host->job, (trace->now + FLOW4D__CHUNK - 1) / FLOW4D__CHUNK, flow4d__chunk,
+                 trace);
     for (i = 0; i < trace->now; i++) {
         count += trace->counts[trace->first + i];
     }
@@ -1500,7 +1449,8 @@ static lao_result flow4d__batches(const flow4d_host *host, flow4d__trace *trace,
         trace->first = done;
         trace->now = lines - done < trace->lines ? lines - done : trace->lines;
         result = flow4d__batch(host, trace, &batches[b]);
-        if (result == LAO_OK && flow4d__progress(host, (uint64_t)done + trace->now, lines)) {
+        if (result == LAO_OK &&
+            lao__job_cancelled(&host->job, (uint64_t)done + trace->now, lines)) {
             result = flow4d__fail(host, FLOW4D_LOG_CANCELLED, "flow4d_trace");
         }
     }
@@ -1518,15 +1468,15 @@ static lao_result flow4d__lines_make(const flow4d_host *host, uint32_t attribute
     lines->allocator = *a;
     lines->line_count = lines->line_room = line_count;
     lines->point_count = lines->point_room = point_count;
-    lines->offsets = (uint32_t *)flow4d__new(a, (size_t)line_count + 1, sizeof(uint32_t));
-    lines->points = view->points = (float *)flow4d__new(a, n, 3 * size);
-    lines->times = view->times = (float *)flow4d__new(a, n, size);
-    lines->speeds = view->speeds = (float *)flow4d__new(a, n, size);
+    lines->offsets = (uint32_t *)lao__new(a, (size_t)line_count + 1, sizeof(uint32_t));
+    lines->points = view->points = (float *)lao__new(a, n, 3 * size);
+    lines->times = view->times = (float *)lao__new(a, n, size);
+    lines->speeds = view->speeds = (float *)lao__new(a, n, size);
     if (attributes & FLOW4D_VORTICITY) {
-        lines->vorticity = view->vorticity = (float *)flow4d__new(a, n, size);
+        lines->vorticity = view->vorticity = (float *)lao__new(a, n, size);
     }
     if (attributes & FLOW4D_CURVATURE) {
-        lines->curvature = view->curvature = (float *)flow4d__new(a, n, size);
+        lines->curvature = view->curvature = (float *)lao__new(a, n, size);
     }
     if (!lines->offsets || (n && (!lines->points || !lines->times || !lines->speeds)) ||
         (n && (attributes & FLOW4D_VORTICITY) && !lines->vorticity) ||
@@ -1584,9 +1534,9 @@ static lao_result flow4d__trace_lines(const flow4d_host *host, flow4d__trace *tr
     trace->lines = FLOW4D__BATCH_POINTS / trace->slot;
     trace->lines = trace->lines < 1 ? 1 : trace->lines < line_count ? trace->lines : line_count;
     batch_count = (size_t)line_count / trace->lines + (line_count % trace->lines != 0);
-    batches = (flow4d__points *)flow4d__new(a, batch_count, sizeof *batches);
-    trace->begins = (uint32_t *)flow4d__new(a, trace->lines, sizeof(uint32_t));
-    trace->counts = (uint32_t *)flow4d__new(a, line_count, sizeof(uint32_t));
+    batches = (flow4d__points *)lao__new(a, batch_count, sizeof *batches);
+    trace->begins = (uint32_t *)lao__new(a, trace->lines, sizeof(uint32_t));
+    trace->counts = (uint32_t *)lao__new(a, line_count, sizeof(uint32_t));
     if (!batches || !trace->begins || !trace->counts ||
         flow4d__points_make(host, attributes, (size_t)trace->lines * trace->slot,
                             &trace->scratch) != 0) {
@@ -1601,9 +1551,9 @@ static lao_result flow4d__trace_lines(const flow4d_host *host, flow4d__trace *tr
     for (b = 0; batches && b < batch_count; b++) {
         flow4d__points_free(host, attributes, &batches[b]);
     }
-    flow4d__delete(a, batches, batch_count, sizeof *batches);
-    flow4d__delete(a, trace->begins, trace->lines, sizeof(uint32_t));
-    flow4d__delete(a, trace->counts, line_count, sizeof(uint32_t));
+    lao__delete(a, batches, batch_count, sizeof *batches);
+    lao__delete(a, trace->begins, trace->lines, sizeof(uint32_t));
+    lao__delete(a, trace->counts, line_count, sizeof(uint32_t));
     return result;
 }
 
@@ -1644,7 +1594,7 @@ lao_result flow4d_trace(const flow4d_host *host, const flow4d_field *field,
         if (result == LAO_OK) {
             result = flow4d__trace_lines(&h, &trace, &made);
         }
-        flow4d__delete(&h.allocator, trace.rows.before, trace.rows.count, sizeof(uint64_t));
+        lao__delete(&h.allocator, trace.rows.before, trace.rows.count, sizeof(uint64_t));
     }
     if (result == LAO_OK) {
         *lines = made;
@@ -1658,13 +1608,12 @@ void flow4d_lines_free(flow4d_lines *lines) {
         return;
     }
     n = lines->point_room;
-    flow4d__delete(&lines->allocator, lines->offsets, (size_t)lines->line_room + 1,
-                   sizeof(uint32_t));
-    flow4d__delete(&lines->allocator, lines->points, n, 3 * sizeof(float));
-    flow4d__delete(&lines->allocator, lines->times, n, sizeof(float));
-    flow4d__delete(&lines->allocator, lines->speeds, n, sizeof(float));
-    flow4d__delete(&lines->allocator, lines->vorticity, n, sizeof(float));
-    flow4d__delete(&lines->allocator, lines->curvature, n, sizeof(float));
+    lao__delete(&lines->allocator, lines->offsets, (size_t)lines->line_room + 1, sizeof(uint32_t));
+    lao__delete(&lines->allocator, lines->points, n, 3 * sizeof(float));
+    lao__delete(&lines->allocator, lines->times, n, sizeof(float));
+    lao__delete(&lines->allocator, lines->speeds, n, sizeof(float));
+    lao__delete(&lines->allocator, lines->vorticity, n, sizeof(float));
+    lao__delete(&lines->allocator, lines->curvature, n, sizeof(float));
     memset(lines, 0, sizeof *lines);
 }
 
@@ -2048,7 +1997,7 @@ static lao_result flow4d__march_run(const flow4d_host *host, flow4d__march *m, s
         memcpy(m->along[1], along, sizeof along);
         m->inside[0] = m->inside[1];
         m->inside[1] = inside;
-        if (flow4d__progress(host, done + z + 1, 2 * (uint64_t)slices)) {
+        if (lao__job_cancelled(&host->job, done + z + 1, 2 * (uint64_t)slices)) {
             return flow4d__fail(host, FLOW4D_LOG_CANCELLED, "flow4d_surface_make");
         }
     }
@@ -2073,9 +2022,9 @@ static lao_result flow4d__march_make(const flow4d_host *host, flow4d__march *m,
     }
     surface->vertex_count = (uint32_t)m->vertex_count;
     surface->triangle_count = (uint32_t)m->triangle_count;
-    surface->vertices = (float *)flow4d__new(&host->allocator, surface->vertex_count, size);
+    surface->vertices = (float *)lao__new(&host->allocator, surface->vertex_count, size);
     surface->triangles =
-        (uint32_t *)flow4d__new(&host->allocator, surface->triangle_count, 3 * sizeof(uint32_t));
+        (uint32_t *)lao__new(&host->allocator, surface->triangle_count, 3 * sizeof(uint32_t));
     if (!surface->vertices || !surface->triangles) {
         result = flow4d__fail(host, FLOW4D_LOG_MEMORY, "the surface");
     } else {
@@ -2125,7 +2074,7 @@ static void flow4d__smooth(float *values, const uint32_t size[3]) {
 static float *flow4d__smoothed(const flow4d_host *host, const flow4d_volume *volume,
                                uint32_t passes) {
     size_t i, count = flow4d__count(volume->size, 1, sizeof(float));
-    float *values = (float *)flow4d__new(&host->allocator, count, sizeof(float));
+    float *values = (float *)lao__new(&host->allocator, count, sizeof(float));
     for (i = 0; values && i < count; i++) {
         values[i] = (float)flow4d__value(volume, i);
     }
@@ -2139,8 +2088,8 @@ static float *flow4d__smoothed(const flow4d_host *host, const flow4d_volume *vol
 static lao_result flow4d__march_memory(const flow4d_host *host, flow4d__march *m,
                                        flow4d_surface *surface) {
     const lao_allocator *a = &host->allocator;
-    uint32_t *words = (uint32_t *)flow4d__new(a, m->row, 5 * sizeof(uint32_t));
-    uint8_t *flags = (uint8_t *)flow4d__new(a, m->row, 2);
+    uint32_t *words = (uint32_t *)lao__new(a, m->row, 5 * sizeof(uint32_t));
+    uint8_t *flags = (uint8_t *)lao__new(a, m->row, 2);
     lao_result result;
     if (!words || !flags) {
         result = flow4d__fail(host, FLOW4D_LOG_MEMORY, "slices of the surface");
@@ -2154,8 +2103,8 @@ static lao_result flow4d__march_memory(const flow4d_host *host, flow4d__march *m
         m->across = words + 4 * m->row;
         result = flow4d__march_make(host, m, surface);
     }
-    flow4d__delete(a, words, m->row, 5 * sizeof(uint32_t));
-    flow4d__delete(a, flags, m->row, 2);
+    lao__delete(a, words, m->row, 5 * sizeof(uint32_t));
+    lao__delete(a, flags, m->row, 2);
     return result;
 }
 
@@ -2202,8 +2151,7 @@ lao_result flow4d_surface_make(const flow4d_host *host, const flow4d_volume *vol
     m.mirrored = flow4d__determinant(volume->to_world) < 0.0;
     m.width = padded[0];
     result = flow4d__march_memory(&h, &m, &made);
-    flow4d__delete(&h.allocator, smooth, flow4d__count(volume->size, 1, sizeof(float)),
-                   sizeof(float));
+    lao__delete(&h.allocator, smooth, flow4d__count(volume->size, 1, sizeof(float)), sizeof(float));
     if (result == LAO_OK) {
         *surface = made;
     }
@@ -2214,10 +2162,9 @@ void flow4d_surface_free(flow4d_surface *surface) {
     if (!surface || !surface->allocator.release) {
         return;
     }
-    flow4d__delete(&surface->allocator, surface->vertices, surface->vertex_count,
-                   3 * sizeof(float));
-    flow4d__delete(&surface->allocator, surface->triangles, surface->triangle_count,
-                   3 * sizeof(uint32_t));
+    lao__delete(&surface->allocator, surface->vertices, surface->vertex_count, 3 * sizeof(float));
+    lao__delete(&surface->allocator, surface->triangles, surface->triangle_count,
+                3 * sizeof(uint32_t));
     memset(surface, 0, sizeof *surface);
 }
 

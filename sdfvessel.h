@@ -2548,16 +2548,15 @@ LAO_FN lao_v3 sdv_chromadepth(float depth) {
 #endif /* SDFVESSEL_H */
 
 /* ================================================================================================
- * host: failures, memory and jobs, as the host wants them. The implementation begins here and ends
-   with the last section; all of it uses the interface and the shared text. */
+ * host: failures and jobs, as the host wants them; memory comes from lineao.h (its section host).
+   The implementation begins here and ends with the last section; all of it uses the interface, the
+   shared text and lineao.h's host. */
 #ifdef SDFVESSEL_IMPLEMENTATION
 #ifndef SDFVESSEL_IMPLEMENTATION_DONE
 #define SDFVESSEL_IMPLEMENTATION_DONE
 
-#include <stdarg.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
+#define LAO__HOST
+#include "lineao.h"
 
 #ifdef __cplusplus
 extern "C" {
@@ -2577,65 +2576,18 @@ static const sdv__item_row sdv__items[] = {
 /* Logs a failure with a place (printf) or NULL; returns its result. */
 static lao_result sdv__fail(const sdv_host *host, sdv_log_item item, const char *place, ...) {
     char text[256];
-    size_t n;
-    if (!host || !host->log) {
-        return sdv__items[item].result;
+    va_list arguments;
+    if (host && host->log) {
+        va_start(arguments, place);
+        lao__failure_text(text, sizeof text, sdv__items[item].text, place, arguments);
+        va_end(arguments);
+        host->log(host->user, item, sdv__items[item].result, text);
     }
-    n = (size_t)snprintf(text, sizeof text, "%s", sdv__items[item].text);
-    if (place && n + 2 < sizeof text) {
-        va_list list;
-        memcpy(text + n, ": ", 3);
-        va_start(list, place);
-        vsnprintf(text + n + 2, sizeof text - n - 2, place, list);
-        va_end(list);
-    }
-    host->log(host->user, item, sdv__items[item].result, text);
     return sdv__items[item].result;
 }
 
-static void *sdv__malloc(void *user, size_t size) {
-    (void)user;
-    return malloc(size);
-}
-static void sdv__free(void *user, void *memory, size_t size) {
-    (void)user;
-    (void)size;
-    free(memory);
-}
 static lao_allocator sdv__allocator(const sdv_host *host) {
-    lao_allocator a;
-    if (host && host->allocator.allocate && host->allocator.release) {
-        return host->allocator;
-    }
-    a.allocate = sdv__malloc;
-    a.release = sdv__free;
-    a.user = NULL;
-    return a;
-}
-
-/* Memory that knows its size, in front of it. NULL: none left, or more than size_t can count. */
-enum { SDV__HEAD = 16 };
-static void *sdv__take(const lao_allocator *allocator, uint64_t count, size_t size) {
-    unsigned char *memory;
-    size_t bytes;
-    if (count > (SIZE_MAX - SDV__HEAD) / size) {
-        return NULL;
-    }
-    bytes = SDV__HEAD + (size_t)count * size;
-    memory = (unsigned char *)allocator->allocate(allocator->user, bytes);
-    if (!memory) {
-        return NULL;
-    }
-    memcpy(memory, &bytes, sizeof bytes);
-    return memory + SDV__HEAD;
-}
-static void sdv__give(const lao_allocator *allocator, void *taken) {
-    if (taken) {
-        unsigned char *memory = (unsigned char *)taken - SDV__HEAD;
-        size_t bytes;
-        memcpy(&bytes, memory, sizeof bytes);
-        allocator->release(allocator->user, memory, bytes);
-    }
+    return lao__allocator_or_default(host ? &host->allocator : NULL);
 }
 
 /* Number k of a vector. */
@@ -2644,21 +2596,6 @@ static float sdv__v3_at(lao_v3 v, uint32_t k) {
 }
 static float sdv__v4_at(lao_v4 v, uint32_t k) {
     return k == 0 ? v.x : k == 1 ? v.y : k == 2 ? v.z : v.w;
-}
-
-/* Cuts one block into arrays: a first round with base NULL counts, a second one with the memory
-   cuts. */
-typedef struct sdv__block {
-    unsigned char *base;
-    uint64_t used;
-} sdv__block;
-static void *sdv__part(sdv__block *block, uint64_t count, size_t size) {
-    unsigned char *part = block->base ? block->base + block->used : NULL;
-    block->used += (count * size + 15u) & ~(uint64_t)15u;
-    return part;
-}
-static uint32_t *sdv__part_u32(sdv__block *block, uint64_t count) {
-    return (uint32_t *)sdv__part(block, count, sizeof(uint32_t));
 }
 
 /* A piece of work in phases, for progress. */
@@ -2682,22 +2619,14 @@ static void sdv__run_item(void *arg, uint32_t index) {
 static int sdv__run(sdv__work *work, uint32_t count, void (*fn)(void *arg, uint32_t index),
                     void *arg) {
     const lao_job *job = work->host ? &work->host->job : NULL;
-    uint32_t first, i;
-    for (first = 0; first < count; first += 16) {
-        uint32_t n = count - first < 16 ? count - first : 16;
-        sdv__batch batch;
-        batch.fn = fn;
-        batch.arg = arg;
-        batch.first = first;
-        if (job && job->run) {
-            job->run(job->user, n, sdv__run_item, &batch);
-        } else {
-            for (i = 0; i < n; i++) {
-                fn(arg, first + i);
-            }
-        }
+    sdv__batch batch;
+    batch.fn = fn;
+    batch.arg = arg;
+    for (batch.first = 0; batch.first < count; batch.first += 16) {
+        uint32_t n = count - batch.first < 16 ? count - batch.first : 16;
+        lao__job_run(job, n, sdv__run_item, &batch);
         work->done += n;
-        if (job && job->progress && job->progress(job->user, work->done, work->total)) {
+        if (lao__job_cancelled(job, work->done, work->total)) {
             return 1;
         }
     }
@@ -2786,26 +2715,26 @@ static lao_result sdv__tree_check(const sdv_host *host, const sdv_tree_desc *des
     return LAO_OK;
 }
 
-static void sdv__build_parts(sdv__build *b, sdv__block *block) {
+static void sdv__build_parts(sdv__build *b, lao__block *block) {
     uint64_t n = b->desc->node_count, m = b->desc->segment_count, all = n + m, size = 16;
     while (size < 2 * (n > m ? n : m)) {
         size *= 2;
     }
     b->table_mask = (uint32_t)(size - 1);
-    b->target = sdv__part_u32(block, n);
-    b->source = sdv__part_u32(block, n);
-    b->group = sdv__part_u32(block, n);
-    b->degree = sdv__part_u32(block, n);
-    b->segments = (sdv_segment *)sdv__part(block, all, sizeof(sdv_segment));
-    b->segment_source = sdv__part_u32(block, all);
-    b->table = sdv__part_u32(block, size);
-    b->first = sdv__part_u32(block, n + 1);
-    b->incident = sdv__part_u32(block, 2 * all);
-    b->later = sdv__part_u32(block, 2 * all);
-    b->turned = (unsigned char *)sdv__part(block, all, 1);
-    b->entered = sdv__part_u32(block, n);
-    b->next = sdv__part_u32(block, n);
-    b->radius = (float *)sdv__part(block, n, sizeof(float));
+    b->target = lao__part_u32(block, n);
+    b->source = lao__part_u32(block, n);
+    b->group = lao__part_u32(block, n);
+    b->degree = lao__part_u32(block, n);
+    b->segments = (sdv_segment *)lao__part(block, all, sizeof(sdv_segment));
+    b->segment_source = lao__part_u32(block, all);
+    b->table = lao__part_u32(block, size);
+    b->first = lao__part_u32(block, n + 1);
+    b->incident = lao__part_u32(block, 2 * all);
+    b->later = lao__part_u32(block, 2 * all);
+    b->turned = (unsigned char *)lao__part(block, all, 1);
+    b->entered = lao__part_u32(block, n);
+    b->next = lao__part_u32(block, n);
+    b->radius = (float *)lao__part(block, n, sizeof(float));
 }
 
 static uint32_t sdv__mix(uint32_t a, uint32_t b, uint32_t c) {
@@ -3062,33 +2991,33 @@ static void sdv__build_incidence(sdv__build *b) {
     b->first[0] = 0;
 }
 
-static void sdv__tree_parts(const sdv__build *b, sdv_tree *t, sdv__block *block) {
+static void sdv__tree_parts(const sdv__build *b, sdv_tree *t, lao__block *block) {
     const sdv_tree_desc *desc = b->desc;
     uint64_t n = t->node_count, m = t->segment_count;
     uint32_t i;
-    t->nodes = (lao_v4 *)sdv__part(block, n, sizeof(lao_v4));
-    t->segments = (sdv_segment *)sdv__part(block, m, sizeof(sdv_segment));
-    t->roots = sdv__part_u32(block, t->root_count);
-    t->parents = sdv__part_u32(block, n);
-    t->parent_segments = sdv__part_u32(block, n);
-    t->components = sdv__part_u32(block, n);
-    t->order = sdv__part_u32(block, n);
-    t->child_counts = sdv__part_u32(block, n);
-    t->node_sources = sdv__part_u32(block, n);
-    t->segment_sources = sdv__part_u32(block, m);
-    t->node_targets = sdv__part_u32(block, t->source_count);
+    t->nodes = (lao_v4 *)lao__part(block, n, sizeof(lao_v4));
+    t->segments = (sdv_segment *)lao__part(block, m, sizeof(sdv_segment));
+    t->roots = lao__part_u32(block, t->root_count);
+    t->parents = lao__part_u32(block, n);
+    t->parent_segments = lao__part_u32(block, n);
+    t->components = lao__part_u32(block, n);
+    t->order = lao__part_u32(block, n);
+    t->child_counts = lao__part_u32(block, n);
+    t->node_sources = lao__part_u32(block, n);
+    t->segment_sources = lao__part_u32(block, m);
+    t->node_targets = lao__part_u32(block, t->source_count);
     t->node_attributes =
-        (sdv_attribute *)sdv__part(block, t->node_attribute_count, sizeof(sdv_attribute));
+        (sdv_attribute *)lao__part(block, t->node_attribute_count, sizeof(sdv_attribute));
     t->segment_attributes =
-        (sdv_attribute *)sdv__part(block, t->segment_attribute_count, sizeof(sdv_attribute));
+        (sdv_attribute *)lao__part(block, t->segment_attribute_count, sizeof(sdv_attribute));
     for (i = 0; i < t->node_attribute_count + t->segment_attribute_count; i++) {
         int of_node = i < t->node_attribute_count;
         uint32_t k = of_node ? i : i - t->node_attribute_count;
         const sdv_attribute *from =
             (of_node ? desc->node_attributes : desc->segment_attributes) + k;
         uint32_t components = from->components ? from->components : 1;
-        char *name = (char *)sdv__part(block, strlen(from->name) + 1, 1);
-        float *values = (float *)sdv__part(block, (of_node ? n : m) * components, sizeof(float));
+        char *name = (char *)lao__part(block, strlen(from->name) + 1, 1);
+        float *values = (float *)lao__part(block, (of_node ? n : m) * components, sizeof(float));
         if (block->base) {
             sdv_attribute *to = (of_node ? t->node_attributes : t->segment_attributes) + k;
             memcpy(name, from->name, strlen(from->name) + 1);
@@ -3318,7 +3247,7 @@ static void sdv__tree_warnings(sdv__build *b, sdv_tree *t) {
 /* The tree from what was picked. */
 static lao_result sdv__tree_finish(sdv__build *b, sdv_tree *out) {
     sdv_tree t;
-    sdv__block block = {NULL, 0};
+    lao__block block = {NULL, 0};
     uint32_t i;
     memset(&t, 0, sizeof t);
     t.node_count = b->node_count;
@@ -3330,7 +3259,7 @@ static lao_result sdv__tree_finish(sdv__build *b, sdv_tree *out) {
         t.root_count += b->group[i] == i;
     }
     sdv__tree_parts(b, &t, &block);
-    t.memory = sdv__take(&b->allocator, block.used, 1);
+    t.memory = lao__take(&b->allocator, block.used, 1);
     if (!t.memory) {
         return sdv__fail(b->host, SDV_LOG_MEMORY, "the tree");
     }
@@ -3352,7 +3281,7 @@ static lao_result sdv__tree_finish(sdv__build *b, sdv_tree *out) {
 
 SDV_API lao_result sdv_tree_build(const sdv_host *host, const sdv_tree_desc *desc, sdv_tree *tree) {
     sdv__build b;
-    sdv__block block = {NULL, 0};
+    lao__block block = {NULL, 0};
     lao_result result;
     if (!desc || !tree) {
         return sdv__fail(host, SDV_LOG_NULL_ARGUMENT, "sdv_tree_build");
@@ -3366,7 +3295,7 @@ SDV_API lao_result sdv_tree_build(const sdv_host *host, const sdv_tree_desc *des
     b.desc = desc;
     b.allocator = sdv__allocator(host);
     sdv__build_parts(&b, &block);
-    block.base = (unsigned char *)sdv__take(&b.allocator, block.used, 1);
+    block.base = (unsigned char *)lao__take(&b.allocator, block.used, 1);
     if (!block.base) {
         return sdv__fail(host, SDV_LOG_MEMORY, "building a tree of %u nodes", desc->node_count);
     }
@@ -3381,13 +3310,13 @@ SDV_API lao_result sdv_tree_build(const sdv_host *host, const sdv_tree_desc *des
         sdv__join(&b);
     }
     result = sdv__tree_finish(&b, tree);
-    sdv__give(&b.allocator, block.base);
+    lao__give(&b.allocator, block.base);
     return result;
 }
 
 SDV_API void sdv_tree_free(sdv_tree *tree) {
     if (tree && tree->memory) {
-        sdv__give(&tree->allocator, tree->memory);
+        lao__give(&tree->allocator, tree->memory);
         memset(tree, 0, sizeof *tree);
     }
 }
@@ -3396,14 +3325,14 @@ SDV_API void sdv_tree_free(sdv_tree *tree) {
  * layout: the reduced tree, its drawing in the plane, and that drawing as SVG or as a tree. Uses
    host. */
 
-static void sdv__reduced_parts(sdv_reduced *r, uint32_t tree_nodes, sdv__block *block) {
-    r->ids = sdv__part_u32(block, r->node_count);
-    r->nodes = sdv__part_u32(block, r->node_count);
-    r->parents = sdv__part_u32(block, r->node_count);
-    r->children = sdv__part_u32(block, 2 * (uint64_t)r->node_count);
-    r->order = sdv__part_u32(block, r->node_count);
-    r->roots = sdv__part_u32(block, r->root_count);
-    r->owners = sdv__part_u32(block, tree_nodes);
+static void sdv__reduced_parts(sdv_reduced *r, uint32_t tree_nodes, lao__block *block) {
+    r->ids = lao__part_u32(block, r->node_count);
+    r->nodes = lao__part_u32(block, r->node_count);
+    r->parents = lao__part_u32(block, r->node_count);
+    r->children = lao__part_u32(block, 2 * (uint64_t)r->node_count);
+    r->order = lao__part_u32(block, r->node_count);
+    r->roots = lao__part_u32(block, r->root_count);
+    r->owners = lao__part_u32(block, tree_nodes);
 }
 
 /* Children along the spanning tree. */
@@ -3507,7 +3436,7 @@ static void sdv__reduced_fill(const sdv_tree *t, const uint32_t *counts, uint32_
 
 SDV_API lao_result sdv_reduce(const sdv_host *host, const sdv_tree *tree, sdv_reduced *reduced) {
     lao_allocator a = sdv__allocator(host);
-    sdv__block block = {NULL, 0};
+    lao__block block = {NULL, 0};
     sdv_reduced r;
     uint32_t i, kept = 0, *scratch;
     uint64_t n;
@@ -3515,7 +3444,7 @@ SDV_API lao_result sdv_reduce(const sdv_host *host, const sdv_tree *tree, sdv_re
         return sdv__fail(host, SDV_LOG_NULL_ARGUMENT, "sdv_reduce");
     }
     n = tree->node_count;
-    scratch = (uint32_t *)sdv__take(&a, 3 * n, sizeof *scratch); /* counts, first, list */
+    scratch = (uint32_t *)lao__take(&a, 3 * n, sizeof *scratch); /* counts, first, list */
     if (!scratch) {
         return sdv__fail(host, SDV_LOG_MEMORY, "reducing a tree of %u nodes", tree->node_count);
     }
@@ -3529,23 +3458,23 @@ SDV_API lao_result sdv_reduce(const sdv_host *host, const sdv_tree *tree, sdv_re
     }
     r.node_count += kept;
     sdv__reduced_parts(&r, tree->node_count, &block);
-    r.memory = sdv__take(&a, block.used, 1);
+    r.memory = lao__take(&a, block.used, 1);
     if (!r.memory) {
-        sdv__give(&a, scratch);
+        lao__give(&a, scratch);
         return sdv__fail(host, SDV_LOG_MEMORY, "a reduced tree of %u nodes", r.node_count);
     }
     block.base = (unsigned char *)r.memory;
     block.used = 0;
     sdv__reduced_parts(&r, tree->node_count, &block);
     sdv__reduced_fill(tree, scratch, kept, scratch + n, scratch + 2 * n, &r);
-    sdv__give(&a, scratch);
+    lao__give(&a, scratch);
     *reduced = r;
     return LAO_OK;
 }
 
 SDV_API void sdv_reduced_free(sdv_reduced *reduced) {
     if (reduced && reduced->memory) {
-        sdv__give(&reduced->allocator, reduced->memory);
+        lao__give(&reduced->allocator, reduced->memory);
         memset(reduced, 0, sizeof *reduced);
     }
 }
@@ -3643,10 +3572,10 @@ static void sdv__layout_children(sdv__layout_work *w, uint32_t n) {
     w->h[c2] = 0.5 * (w->low[c2] + w->high[c2]);
 }
 
-static void sdv__layout_parts(sdv_layout *l, sdv__block *block) {
-    l->h = (float *)sdv__part(block, l->node_count, sizeof(float));
-    l->s = (float *)sdv__part(block, l->node_count, sizeof(float));
-    l->weights = (float *)sdv__part(block, l->node_count, sizeof(float));
+static void sdv__layout_parts(sdv_layout *l, lao__block *block) {
+    l->h = (float *)lao__part(block, l->node_count, sizeof(float));
+    l->s = (float *)lao__part(block, l->node_count, sizeof(float));
+    l->weights = (float *)lao__part(block, l->node_count, sizeof(float));
 }
 
 static void sdv__layout_finish(const sdv__layout_work *w, sdv_layout *l) {
@@ -3669,7 +3598,7 @@ SDV_API lao_result sdv_layout_make(const sdv_host *host, const sdv_tree *tree,
                                    sdv_layout *layout) {
     const sdv_layout_desc standard = {NULL, 0, 0, 0};
     sdv__layout_work w;
-    sdv__block block = {NULL, 0};
+    lao__block block = {NULL, 0};
     sdv_layout l;
     double *scratch;
     uint32_t i;
@@ -3683,11 +3612,11 @@ SDV_API lao_result sdv_layout_make(const sdv_host *host, const sdv_tree *tree,
     memset(&l, 0, sizeof l);
     l.node_count = reduced->node_count;
     l.allocator = sdv__allocator(host);
-    scratch = (double *)sdv__take(&l.allocator, 5 * (uint64_t)l.node_count, sizeof *scratch);
+    scratch = (double *)lao__take(&l.allocator, 5 * (uint64_t)l.node_count, sizeof *scratch);
     sdv__layout_parts(&l, &block);
-    l.memory = scratch ? sdv__take(&l.allocator, block.used, 1) : NULL;
+    l.memory = scratch ? lao__take(&l.allocator, block.used, 1) : NULL;
     if (!l.memory) {
-        sdv__give(&l.allocator, scratch);
+        lao__give(&l.allocator, scratch);
         return sdv__fail(host, SDV_LOG_MEMORY, "a layout of %u nodes", l.node_count);
     }
     block.base = (unsigned char *)l.memory;
@@ -3708,14 +3637,14 @@ SDV_API lao_result sdv_layout_make(const sdv_host *host, const sdv_tree *tree,
         }
     }
     sdv__layout_finish(&w, &l);
-    sdv__give(&l.allocator, scratch);
+    lao__give(&l.allocator, scratch);
     *layout = l;
     return LAO_OK;
 }
 
 SDV_API void sdv_layout_free(sdv_layout *layout) {
     if (layout && layout->memory) {
-        sdv__give(&layout->allocator, layout->memory);
+        lao__give(&layout->allocator, layout->memory);
         memset(layout, 0, sizeof *layout);
     }
 }
@@ -3923,9 +3852,9 @@ SDV_API lao_result sdv_layout_tree(const sdv_host *host, const sdv_tree *tree,
     for (k = 0; k < reduced->node_count; k++) {
         d.node_count += reduced->ids[k] >= tree->node_count;
     }
-    d.positions = (float *)sdv__take(&a, 3 * (uint64_t)d.node_count, sizeof *d.positions);
-    d.radii = (float *)sdv__take(&a, d.node_count, sizeof *d.radii);
-    d.segments = (sdv_segment *)sdv__take(&a, d.node_count, sizeof *d.segments);
+    d.positions = (float *)lao__take(&a, 3 * (uint64_t)d.node_count, sizeof *d.positions);
+    d.radii = (float *)lao__take(&a, d.node_count, sizeof *d.radii);
+    d.segments = (sdv_segment *)lao__take(&a, d.node_count, sizeof *d.segments);
     if (d.positions && d.radii && d.segments) {
         sdv__drawing_page(&d, desc);
         for (k = 0; k < reduced->node_count; k++) {
@@ -3938,9 +3867,9 @@ SDV_API lao_result sdv_layout_tree(const sdv_host *host, const sdv_tree *tree,
         out.segments = d.segments;
         result = sdv_tree_build(&silent, &out, drawing);
     }
-    sdv__give(&a, d.positions);
-    sdv__give(&a, d.radii);
-    sdv__give(&a, d.segments);
+    lao__give(&a, d.positions);
+    lao__give(&a, d.radii);
+    lao__give(&a, d.segments);
     return result == LAO_OK ? LAO_OK : sdv__fail(host, SDV_LOG_MEMORY, "drawing a layout");
 }
 
@@ -4236,10 +4165,10 @@ static void sdv__cones_take(const sdv_tree *tree, sdv_grid *g) {
     uint64_t texels = 2 * (uint64_t)g->cone_count;
     uint64_t forms = sdv__has_forms(tree) ? 3 * (uint64_t)g->cone_count : 0;
     uint64_t sections = forms ? tree->node_count : 0;
-    g->cones = (lao_v4 *)sdv__take(&g->allocator, texels + forms + sections, sizeof *g->cones);
+    g->cones = (lao_v4 *)lao__take(&g->allocator, texels + forms + sections, sizeof *g->cones);
     g->forms = g->cones && forms ? g->cones + texels : NULL;
     g->sections = g->forms ? g->forms + forms : NULL;
-    g->cone_nodes = (uint32_t *)sdv__take(&g->allocator, texels, sizeof *g->cone_nodes);
+    g->cone_nodes = (uint32_t *)lao__take(&g->allocator, texels, sizeof *g->cone_nodes);
 }
 static void sdv__cones_fill(const sdv_tree *tree, sdv_grid *g) {
     uint32_t i, n = tree->segment_count;
@@ -4630,7 +4559,7 @@ static uint32_t *sdv__bin_cones(const sdv_grid *g, uint32_t *first) {
         first[z] = (uint32_t)sum;
         sum += n;
     }
-    binned = sum < SDV_NONE ? (uint32_t *)sdv__take(&g->allocator, sum, sizeof *binned) : NULL;
+    binned = sum < SDV_NONE ? (uint32_t *)lao__take(&g->allocator, sum, sizeof *binned) : NULL;
     for (i = 0; binned && i < g->cone_count; i++) {
         sdv__raster_layers(g, g->cones + 2 * (size_t)i, range);
         for (z = range[0]; z < range[1]; z++) { /* first = the next free place, */
@@ -4676,14 +4605,14 @@ static lao_result sdv__grid_fill(sdv__work *work, sdv_grid *g, uint32_t *first,
     if (!cancelled) {
         sum = sdv__layer_starts(g, layer_ids);
         g->id_count = g->id_room = (uint32_t)sum;
-        g->ids = sum <= SDV__EXACT ? (float *)sdv__take(&g->allocator, sum, sizeof *g->ids) : NULL;
+        g->ids = sum <= SDV__EXACT ? (float *)lao__take(&g->allocator, sum, sizeof *g->ids) : NULL;
     }
     if (g->ids) {
         cancelled = sdv__run(work, g->size[2], sdv__fill_layer, &f) ||
                     sdv__run(work, g->size[1], sdv__column_slab, &f) ||
                     sdv__run(work, g->size[2], sdv__refine_layer, &f);
     }
-    sdv__give(&g->allocator, binned);
+    lao__give(&g->allocator, binned);
     if (cancelled) {
         return sdv__fail(host, SDV_LOG_CANCELLED, "building a grid");
     }
@@ -4715,13 +4644,13 @@ SDV_API lao_result sdv_grid_build(const sdv_host *host, const sdv_tree *tree,
         return sdv__fail(host, SDV_LOG_GRID_CELLS, "%u x %u x %u", g.size[0], g.size[1], g.size[2]);
     }
     g.allocator = sdv__allocator(host);
-    g.cells = (lao_v4 *)sdv__take(&g.allocator, g.cell_count, sizeof *g.cells);
-    g.layer = (uint32_t *)sdv__take(&g.allocator, g.cell_count, sizeof *g.layer);
-    g.occupied = (uint32_t *)sdv__take(
+    g.cells = (lao_v4 *)lao__take(&g.allocator, g.cell_count, sizeof *g.cells);
+    g.layer = (uint32_t *)lao__take(&g.allocator, g.cell_count, sizeof *g.layer);
+    g.occupied = (uint32_t *)lao__take(
         &g.allocator, (uint64_t)sdv__words(&g) * g.size[1] * g.size[2], sizeof *g.occupied);
     sdv__cones_take(tree, &g);
-    first = (uint32_t *)sdv__take(&g.allocator, SDV__AXIS + 1, sizeof *first);
-    layer_ids = (uint64_t *)sdv__take(&g.allocator, SDV__AXIS, sizeof *layer_ids);
+    first = (uint32_t *)lao__take(&g.allocator, SDV__AXIS + 1, sizeof *first);
+    layer_ids = (uint64_t *)lao__take(&g.allocator, SDV__AXIS, sizeof *layer_ids);
     if (g.cells && g.layer && g.occupied && g.cones && g.cone_nodes && first && layer_ids) {
         work.host = host;
         work.done = 0;
@@ -4732,8 +4661,8 @@ SDV_API lao_result sdv_grid_build(const sdv_host *host, const sdv_tree *tree,
         result = sdv__fail(host, SDV_LOG_MEMORY, "a grid of %u cells and %u cones", g.cell_count,
                            g.cone_count);
     }
-    sdv__give(&g.allocator, first);
-    sdv__give(&g.allocator, layer_ids);
+    lao__give(&g.allocator, first);
+    lao__give(&g.allocator, layer_ids);
     if (result != LAO_OK) {
         sdv_grid_free(&g);
         return result;
@@ -4744,12 +4673,12 @@ SDV_API lao_result sdv_grid_build(const sdv_host *host, const sdv_tree *tree,
 
 SDV_API void sdv_grid_free(sdv_grid *grid) {
     if (grid && grid->allocator.release) {
-        sdv__give(&grid->allocator, grid->cells);
-        sdv__give(&grid->allocator, grid->layer);
-        sdv__give(&grid->allocator, grid->occupied);
-        sdv__give(&grid->allocator, grid->ids);
-        sdv__give(&grid->allocator, grid->cones);
-        sdv__give(&grid->allocator, grid->cone_nodes);
+        lao__give(&grid->allocator, grid->cells);
+        lao__give(&grid->allocator, grid->layer);
+        lao__give(&grid->allocator, grid->occupied);
+        lao__give(&grid->allocator, grid->ids);
+        lao__give(&grid->allocator, grid->cones);
+        lao__give(&grid->allocator, grid->cone_nodes);
         memset(grid, 0, sizeof *grid);
     }
 }
@@ -5171,9 +5100,9 @@ static int sdv__changed_cones(const sdv_tree *tree, const uint32_t *nodes, uint3
                               sdv__change *c) {
     const sdv_grid *g = c->grid;
     const lao_allocator *a = &g->allocator;
-    unsigned char *moved = (unsigned char *)sdv__take(a, tree->node_count, 1);
+    unsigned char *moved = (unsigned char *)lao__take(a, tree->node_count, 1);
     uint32_t i, n = 0;
-    c->is_changed = (unsigned char *)sdv__take(a, g->cone_count, 1);
+    c->is_changed = (unsigned char *)lao__take(a, g->cone_count, 1);
     if (moved && c->is_changed) {
         memset(moved, 0, tree->node_count);
         for (i = 0; i < count; i++) {
@@ -5184,8 +5113,8 @@ static int sdv__changed_cones(const sdv_tree *tree, const uint32_t *nodes, uint3
             c->is_changed[i] = moved[ends[0]] || moved[ends[1]];
             c->changed_count += c->is_changed[i];
         }
-        c->changed = (uint32_t *)sdv__take(a, c->changed_count, sizeof *c->changed);
-        c->cones = (lao_v4 *)sdv__take(a, 2 * (uint64_t)c->changed_count, sizeof *c->cones);
+        c->changed = (uint32_t *)lao__take(a, c->changed_count, sizeof *c->changed);
+        c->cones = (lao_v4 *)lao__take(a, 2 * (uint64_t)c->changed_count, sizeof *c->cones);
     }
     for (i = 0; c->changed && c->cones && i < g->cone_count; i++) {
         if (c->is_changed[i]) {
@@ -5193,7 +5122,7 @@ static int sdv__changed_cones(const sdv_tree *tree, const uint32_t *nodes, uint3
             sdv__cone_set(tree, g->cone_nodes + 2 * (size_t)i, c->cones + 2 * (size_t)n++);
         }
     }
-    sdv__give(a, moved);
+    lao__give(a, moved);
     return c->changed && c->cones;
 }
 /* What marking has counted becomes where each layer begins. Returns the number of lists. */
@@ -5219,12 +5148,12 @@ static int sdv__change_memory(sdv__change *c, uint32_t lists) {
     const sdv_grid *g = c->grid;
     const lao_allocator *a = &g->allocator;
     uint64_t words = (uint64_t)sdv__words(g) * g->size[1] * g->size[2];
-    c->listed = (uint32_t *)sdv__take(a, 4 * (uint64_t)lists, sizeof *c->listed);
-    c->moves = (int32_t *)sdv__take(a, (uint64_t)lists + 1, sizeof *c->moves);
-    c->fresh = (float *)sdv__take(a, c->fresh_in[g->size[2]], sizeof *c->fresh);
+    c->listed = (uint32_t *)lao__take(a, 4 * (uint64_t)lists, sizeof *c->listed);
+    c->moves = (int32_t *)lao__take(a, (uint64_t)lists + 1, sizeof *c->moves);
+    c->fresh = (float *)lao__take(a, c->fresh_in[g->size[2]], sizeof *c->fresh);
     c->rows =
-        (uint32_t *)sdv__take(a, c->row_layers * (uint64_t)sdv__layer_size(g), sizeof *c->rows);
-    c->was = (uint32_t *)sdv__take(a, words, sizeof *c->was);
+        (uint32_t *)lao__take(a, c->row_layers * (uint64_t)sdv__layer_size(g), sizeof *c->rows);
+    c->was = (uint32_t *)lao__take(a, words, sizeof *c->was);
     if (!c->listed || !c->moves || !c->fresh || !c->rows || !c->was) {
         return 0;
     }
@@ -5242,9 +5171,9 @@ static lao_result sdv__change_prepare(sdv__work *work, sdv__change *c, uint64_t 
     for (k = 0; k < 3; k++) {
         c->blocks[k] = sdv__parts(g->size[k], SDV__BLOCK);
     }
-    c->stale = (unsigned char *)sdv__take(a, g->cell_count, 1);
+    c->stale = (unsigned char *)lao__take(a, g->cell_count, 1);
     c->close =
-        (unsigned char *)sdv__take(a, (uint64_t)c->blocks[0] * c->blocks[1] * c->blocks[2], 1);
+        (unsigned char *)lao__take(a, (uint64_t)c->blocks[0] * c->blocks[1] * c->blocks[2], 1);
     if (!c->stale || !c->close) {
         return sdv__fail(work->host, SDV_LOG_MEMORY, "changing a grid");
     }
@@ -5265,7 +5194,7 @@ static lao_result sdv__change_prepare(sdv__work *work, sdv__change *c, uint64_t 
     }
     if (*sum > g->id_room) { /* and some more, for the changes to come */
         c->room = (uint32_t)(*sum + *sum / 8);
-        c->ids = (float *)sdv__take(a, c->room, sizeof *c->ids);
+        c->ids = (float *)lao__take(a, c->room, sizeof *c->ids);
         if (!c->ids) {
             return sdv__fail(work->host, SDV_LOG_MEMORY, "changing a grid");
         }
@@ -5323,17 +5252,17 @@ static lao_result sdv__grid_change(const sdv_host *host, const sdv_tree *tree,
         grid->id_count = (uint32_t)sum;
         grid->rebuilt = 0;
     }
-    sdv__give(&grid->allocator, c.changed);
-    sdv__give(&grid->allocator, c.cones);
-    sdv__give(&grid->allocator, c.is_changed);
-    sdv__give(&grid->allocator, c.stale);
-    sdv__give(&grid->allocator, c.close);
-    sdv__give(&grid->allocator, c.listed);
-    sdv__give(&grid->allocator, c.moves);
-    sdv__give(&grid->allocator, c.fresh);
-    sdv__give(&grid->allocator, c.rows);
-    sdv__give(&grid->allocator, c.was);
-    sdv__give(&grid->allocator, c.ids);
+    lao__give(&grid->allocator, c.changed);
+    lao__give(&grid->allocator, c.cones);
+    lao__give(&grid->allocator, c.is_changed);
+    lao__give(&grid->allocator, c.stale);
+    lao__give(&grid->allocator, c.close);
+    lao__give(&grid->allocator, c.listed);
+    lao__give(&grid->allocator, c.moves);
+    lao__give(&grid->allocator, c.fresh);
+    lao__give(&grid->allocator, c.rows);
+    lao__give(&grid->allocator, c.was);
+    lao__give(&grid->allocator, c.ids);
     return result;
 }
 
@@ -5920,7 +5849,7 @@ SDV_API lao_result sdv_target_create(const sdv_host *host, const sdv_target_desc
     if (result != LAO_OK) {
         return result;
     }
-    t = (sdv_target *)sdv__take(&a, 1, sizeof *t);
+    t = (sdv_target *)lao__take(&a, 1, sizeof *t);
     if (!t) {
         return sdv__fail(host, SDV_LOG_MEMORY, "a target");
     }
@@ -5931,9 +5860,9 @@ SDV_API lao_result sdv_target_create(const sdv_host *host, const sdv_target_desc
     t->piece_count = t->piece_count ? t->piece_count : 1; /* a point */
     for (t->leaf_count = 1; t->leaf_count * SDV__PIECES < t->piece_count; t->leaf_count *= 2) {
     }
-    t->pieces = (sdv__piece *)sdv__take(&a, t->piece_count, sizeof *t->pieces);
-    t->balls = (lao_v4 *)sdv__take(&a, 2 * (uint64_t)t->leaf_count, sizeof *t->balls);
-    keys = (uint32_t *)sdv__take(&a, 3 * (uint64_t)t->piece_count, sizeof *keys);
+    t->pieces = (sdv__piece *)lao__take(&a, t->piece_count, sizeof *t->pieces);
+    t->balls = (lao_v4 *)lao__take(&a, 2 * (uint64_t)t->leaf_count, sizeof *t->balls);
+    keys = (uint32_t *)lao__take(&a, 3 * (uint64_t)t->piece_count, sizeof *keys);
     if (t->pieces && t->balls && keys) {
         sdv__target_fill(t, desc, keys);
         *target = t;
@@ -5941,16 +5870,16 @@ SDV_API lao_result sdv_target_create(const sdv_host *host, const sdv_target_desc
         result = sdv__fail(host, SDV_LOG_MEMORY, "a target of %u pieces", t->piece_count);
         sdv_target_free(t);
     }
-    sdv__give(&a, keys);
+    lao__give(&a, keys);
     return result;
 }
 
 SDV_API void sdv_target_free(sdv_target *target) {
     if (target) {
         lao_allocator a = target->allocator;
-        sdv__give(&a, target->pieces);
-        sdv__give(&a, target->balls);
-        sdv__give(&a, target);
+        lao__give(&a, target->pieces);
+        lao__give(&a, target->balls);
+        lao__give(&a, target);
     }
 }
 
@@ -6031,7 +5960,7 @@ SDV_API lao_result sdv_target_distances(const sdv_host *host, const sdv_target *
     m.target = target;
     m.tree = tree;
     m.segments =
-        segments ? segments : (float *)sdv__take(&a, tree->segment_count, sizeof *m.segments);
+        segments ? segments : (float *)lao__take(&a, tree->segment_count, sizeof *m.segments);
     if (!m.segments) {
         return sdv__fail(host, SDV_LOG_MEMORY, "%u distances", tree->segment_count);
     }
@@ -6050,7 +5979,7 @@ SDV_API lao_result sdv_target_distances(const sdv_host *host, const sdv_target *
         }
     }
     if (!segments) {
-        sdv__give(&a, m.segments);
+        lao__give(&a, m.segments);
     }
     return cancelled ? sdv__fail(host, SDV_LOG_CANCELLED, "measuring distances") : LAO_OK;
 }
@@ -6211,7 +6140,7 @@ SDV_API lao_result sdv_pull_push(const sdv_host *host, const sdv_pull_push_desc 
         levels[count].height = (levels[count - 1].height + 1) / 2;
         texels += (uint64_t)levels[count].width * levels[count].height;
     }
-    memory = (float *)sdv__take(&a, texels * (desc->channels + 1), sizeof *memory);
+    memory = (float *)lao__take(&a, texels * (desc->channels + 1), sizeof *memory);
     if (!memory) {
         return sdv__fail(host, SDV_LOG_MEMORY, "the pyramid of a %u x %u image", desc->width,
                          desc->height);
@@ -6230,7 +6159,7 @@ SDV_API lao_result sdv_pull_push(const sdv_host *host, const sdv_pull_push_desc 
     if (empty && !cancelled) {
         *empty = !(levels[count - 1].weights[0] > 0.0f);
     }
-    sdv__give(&a, memory);
+    lao__give(&a, memory);
     return cancelled ? sdv__fail(host, SDV_LOG_CANCELLED, "filling an image") : LAO_OK;
 }
 
@@ -6624,7 +6553,7 @@ static int sdv__object_colors(sdv_object *object, const uint8_t *colors, uint32_
     static const uint8_t coral[4] = {226, 106, 92, 255};
     size_t i, size = 8 * (size_t)cone_count;
     if (!colors) {
-        uint8_t *own = (uint8_t *)sdv__take(&object->allocator, size, 1);
+        uint8_t *own = (uint8_t *)lao__take(&object->allocator, size, 1);
         if (!own) {
             return 0;
         }
@@ -6912,22 +6841,22 @@ static lao_result sdv__object_nearest(const sdv_host *host, sdv_object *object) 
     }
     for (; leaves * SDV_LEAF_CONES < count; leaves *= 2) {
     }
-    texels = (lao_v4 *)sdv__take(a, first + 3 * (uint64_t)leaves, sizeof *texels);
-    keys = (uint32_t *)sdv__take(a, 3 * (uint64_t)count, sizeof *keys); /* and order, other */
+    texels = (lao_v4 *)lao__take(a, first + 3 * (uint64_t)leaves, sizeof *texels);
+    keys = (uint32_t *)lao__take(a, 3 * (uint64_t)count, sizeof *keys); /* and order, other */
     if (texels && keys) {
         object->shapes[0].z = (float)first;
         object->shapes[0].w = (float)leaves;
         memcpy(texels, object->shapes, first * sizeof *texels);
         sdv__nearest_order(cones, count, keys);
         sdv__nearest_fill(cones, count, keys + count, leaves, texels + first);
-        sdv__give(a, object->nearest);
+        lao__give(a, object->nearest);
         object->nearest = texels;
         sdv__object_buffer(object, "vessel_shapes", texels, first + 3 * leaves);
-        sdv__give(a, keys);
+        lao__give(a, keys);
         return LAO_OK;
     }
-    sdv__give(a, texels);
-    sdv__give(a, keys);
+    lao__give(a, texels);
+    lao__give(a, keys);
     return sdv__fail(host, SDV_LOG_MEMORY, "the nearest of %u vessels", count);
 }
 
@@ -7099,14 +7028,14 @@ SDV_API lao_result sdv_object_mesh(const sdv_host *host, const sdv_mesh_desc *de
     }
     size = (3 * (size_t)desc->vertex_count + desc->triangle_count) * sizeof *memory +
            4 * (size_t)desc->vertex_count;
-    memory = (lao_v4 *)sdv__take(&allocator, size, 1);
+    memory = (lao_v4 *)lao__take(&allocator, size, 1);
     if (!memory) {
         return sdv__fail(host, SDV_LOG_MEMORY, "a mesh of %u vertices", desc->vertex_count);
     }
     if (!sdv__mesh_fill(desc, memory, memory + 3 * (size_t)desc->vertex_count,
                         (uint8_t *)(memory + 3 * (size_t)desc->vertex_count + desc->triangle_count),
                         bounds)) {
-        sdv__give(&allocator, memory);
+        lao__give(&allocator, memory);
         return sdv__fail(host, SDV_LOG_MESH, NULL);
     }
     sdv_object_drawn(host, bounds[0], object);
@@ -7143,11 +7072,11 @@ SDV_API lao_result sdv_object_pattern(const sdv_host *host, const float *values,
     if (size < 1 || size > SDV_MOST_PATTERN) {
         return sdv__fail(host, SDV_LOG_IMAGE_SIZE, "a pattern of %u x %u", size, size);
     }
-    greys = (sdv__grey *)sdv__take(&a, count, sizeof *greys);
-    pattern = (float *)sdv__take(&a, count + 1, sizeof *pattern);
+    greys = (sdv__grey *)lao__take(&a, count, sizeof *greys);
+    pattern = (float *)lao__take(&a, count + 1, sizeof *pattern);
     if (!greys || !pattern) {
-        sdv__give(&a, greys);
-        sdv__give(&a, pattern);
+        lao__give(&a, greys);
+        lao__give(&a, pattern);
         return sdv__fail(host, SDV_LOG_MEMORY, "a pattern of %u x %u", size, size);
     }
     for (i = 0; i < count; i++) {
@@ -7159,7 +7088,7 @@ SDV_API lao_result sdv_object_pattern(const sdv_host *host, const float *values,
     for (i = 0; i < count; i++) {
         pattern[1 + greys[i].place] = ((float)i + 0.5f) / (float)count;
     }
-    sdv__give(&a, greys);
+    lao__give(&a, greys);
     object->pattern = pattern;
     sdv__object_buffer(object, "vessel_pattern", pattern, count + 1);
     return LAO_OK;
@@ -7167,9 +7096,9 @@ SDV_API lao_result sdv_object_pattern(const sdv_host *host, const float *values,
 
 SDV_API void sdv_object_free(sdv_object *object) {
     if (object && object->allocator.release) {
-        sdv__give(&object->allocator, object->pattern);
-        sdv__give(&object->allocator, object->nearest);
-        sdv__give(&object->allocator, object->memory);
+        lao__give(&object->allocator, object->pattern);
+        lao__give(&object->allocator, object->nearest);
+        lao__give(&object->allocator, object->memory);
         sdv_grid_free(&object->grid);
         memset(object, 0, sizeof *object);
     }

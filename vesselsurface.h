@@ -882,16 +882,15 @@ LAO_FN lao_v4 vsf_attenuated(lao_v4 color, float depth, float strength) {
 #endif /* VESSELSURFACE_H */
 
 /* ================================================================================================
- * host: failures, memory and jobs, as the host wants them. The implementation begins here and ends
-   with the last section; all of it uses the interface and the shared text. */
+ * host: failures and jobs, as the host wants them; memory comes from lineao.h (its section host).
+   The implementation begins here and ends with the last section; all of it uses the interface, the
+   shared text and lineao.h's host. */
 #ifdef VESSELSURFACE_IMPLEMENTATION
 #ifndef VESSELSURFACE_IMPLEMENTATION_DONE
 #define VESSELSURFACE_IMPLEMENTATION_DONE
 
-#include <stdarg.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
+#define LAO__HOST
+#include "lineao.h"
 
 #ifdef __cplusplus
 extern "C" {
@@ -911,83 +910,18 @@ static const vsf__item_row vsf__items[] = {
 /* Logs a failure with a place (printf) or NULL; returns its result. */
 static lao_result vsf__fail(const vsf_host *host, vsf_log_item item, const char *place, ...) {
     char text[320];
-    size_t n;
-    if (!host || !host->log) {
-        return vsf__items[item].result;
+    va_list arguments;
+    if (host && host->log) {
+        va_start(arguments, place);
+        lao__failure_text(text, sizeof text, vsf__items[item].text, place, arguments);
+        va_end(arguments);
+        host->log(host->user, item, vsf__items[item].result, text);
     }
-    n = (size_t)snprintf(text, sizeof text, "%s", vsf__items[item].text);
-    if (place && n + 2 < sizeof text) {
-        va_list list;
-        memcpy(text + n, ": ", 3);
-        va_start(list, place);
-        vsnprintf(text + n + 2, sizeof text - n - 2, place, list);
-        va_end(list);
-    }
-    host->log(host->user, item, vsf__items[item].result, text);
     return vsf__items[item].result;
 }
 
-static void *vsf__malloc(void *user, size_t size) {
-    (void)user;
-    return malloc(size);
-}
-static void vsf__free(void *user, void *memory, size_t size) {
-    (void)user;
-    (void)size;
-    free(memory);
-}
 static lao_allocator vsf__allocator(const vsf_host *host) {
-    lao_allocator a;
-    if (host && host->allocator.allocate && host->allocator.release) {
-        return host->allocator;
-    }
-    a.allocate = vsf__malloc;
-    a.release = vsf__free;
-    a.user = NULL;
-    return a;
-}
-
-/* Memory that knows its size, in front of it. NULL: none left, or more than size_t can count. */
-enum { VSF__HEAD = 16 };
-static void *vsf__take(const lao_allocator *allocator, uint64_t count, size_t size) {
-    unsigned char *memory;
-    size_t bytes;
-    if (count > (SIZE_MAX / 2 - VSF__HEAD) / size) {
-        return NULL;
-    }
-    bytes = VSF__HEAD + (size_t)count * size;
-    memory = (unsigned char *)allocator->allocate(allocator->user, bytes);
-    if (!memory) {
-        return NULL;
-    }
-    memcpy(memory, &bytes, sizeof bytes);
-    return memory + VSF__HEAD;
-}
-static void vsf__give(const lao_allocator *allocator, void *taken) {
-    if (taken) {
-        unsigned char *memory = (unsigned char *)taken - VSF__HEAD;
-        size_t bytes;
-        memcpy(&bytes, memory, sizeof bytes);
-        allocator->release(allocator->user, memory, bytes);
-    }
-}
-
-/* Cuts one block into arrays: a first round with base NULL counts, a second one with the memory
-   cuts. Counts stay below 2^34, so that sums of a few dozen parts do not overflow. */
-typedef struct vsf__block {
-    unsigned char *base;
-    uint64_t used;
-} vsf__block;
-static void *vsf__part(vsf__block *block, uint64_t count, size_t size) {
-    unsigned char *part = block->base ? block->base + block->used : NULL;
-    block->used += (count * size + 15u) & ~(uint64_t)15u;
-    return part;
-}
-static uint32_t *vsf__part_u32(vsf__block *block, uint64_t count) {
-    return (uint32_t *)vsf__part(block, count, sizeof(uint32_t));
-}
-static float *vsf__part_float(vsf__block *block, uint64_t count) {
-    return (float *)vsf__part(block, count, sizeof(float));
+    return lao__allocator_or_default(host ? &host->allocator : NULL);
 }
 
 /* Work in fixed chunks through the host's job. `done` of `total` is what progress hears. */
@@ -1009,9 +943,9 @@ static void vsf__work_chunk(void *arg, uint32_t index) {
 /* Returns 0, or -1 when the host cancels. Every item counts one unit of progress. */
 static int vsf__run(vsf__progress *progress, uint32_t items, uint32_t chunk, void *arg,
                     void (*fn)(void *arg, uint32_t first, uint32_t end)) {
-    const vsf_host *host = progress->host;
+    const lao_job *job = progress->host ? &progress->host->job : NULL;
     const uint32_t batch = 64;
-    uint32_t chunks = items / chunk + (items % chunk != 0), i;
+    uint32_t chunks = items / chunk + (items % chunk != 0);
     vsf__work work;
     work.fn = fn;
     work.arg = arg;
@@ -1020,19 +954,12 @@ static int vsf__run(vsf__progress *progress, uint32_t items, uint32_t chunk, voi
     for (work.offset = 0; work.offset < chunks; work.offset += batch) {
         uint32_t count = chunks - work.offset < batch ? chunks - work.offset : batch;
         uint64_t units = (uint64_t)count * chunk;
-        if (host && host->job.run) {
-            host->job.run(host->job.user, count, vsf__work_chunk, &work);
-        } else {
-            for (i = 0; i < count; i++) {
-                vsf__work_chunk(&work, i);
-            }
-        }
+        lao__job_run(job, count, vsf__work_chunk, &work);
         progress->done += units;
         if (progress->done > progress->total) {
             progress->done = progress->total;
         }
-        if (host && host->job.progress &&
-            host->job.progress(host->job.user, progress->done, progress->total)) {
+        if (lao__job_cancelled(job, progress->done, progress->total)) {
             return -1;
         }
     }
@@ -1225,25 +1152,25 @@ static lao_result vsf__mesh_check(const vsf_host *host, const vsf_mesh_desc *des
     return LAO_OK;
 }
 
-static void vsf__build_parts(vsf__build *b, vsf__block *block) {
+static void vsf__build_parts(vsf__build *b, lao__block *block) {
     uint64_t n = b->desc->vertex_count, m = b->desc->triangle_count, size = 16;
     while (size < 2 * n) {
         size *= 2;
     }
     b->table_mask = (uint32_t)(size - 1);
-    b->target = vsf__part_u32(block, n);
-    b->source = vsf__part_u32(block, n);
-    b->table = vsf__part_u32(block, b->desc->flags & VSF_MESH_NO_WELD ? 0 : size);
-    b->corners = vsf__part_u32(block, 3 * m);
-    b->origin = vsf__part_u32(block, m);
-    b->opposites = vsf__part_u32(block, 3 * m);
-    b->order[0] = vsf__part_u32(block, 3 * m);
-    b->order[1] = vsf__part_u32(block, 3 * m);
-    b->starts = vsf__part_u32(block, n + 1);
-    b->part = vsf__part_u32(block, m);
-    b->queue = vsf__part_u32(block, m);
-    b->flags = (unsigned char *)vsf__part(block, m, 1);
-    b->borders = (unsigned char *)vsf__part(block, n, 1);
+    b->target = lao__part_u32(block, n);
+    b->source = lao__part_u32(block, n);
+    b->table = lao__part_u32(block, b->desc->flags & VSF_MESH_NO_WELD ? 0 : size);
+    b->corners = lao__part_u32(block, 3 * m);
+    b->origin = lao__part_u32(block, m);
+    b->opposites = lao__part_u32(block, 3 * m);
+    b->order[0] = lao__part_u32(block, 3 * m);
+    b->order[1] = lao__part_u32(block, 3 * m);
+    b->starts = lao__part_u32(block, n + 1);
+    b->part = lao__part_u32(block, m);
+    b->queue = lao__part_u32(block, m);
+    b->flags = (unsigned char *)lao__part(block, m, 1);
+    b->borders = (unsigned char *)lao__part(block, n, 1);
 }
 
 /* target = the first vertex at the same place, VSF_NONE where there is no place */
@@ -1583,27 +1510,27 @@ static void vsf__drop_flat(vsf__build *b) {
 
 /* ---- the mesh itself */
 
-static void vsf__mesh_parts(vsf_mesh *mesh, const vsf_attribute *attributes, vsf__block *block) {
+static void vsf__mesh_parts(vsf_mesh *mesh, const vsf_attribute *attributes, lao__block *block) {
     uint64_t n = mesh->vertex_count, m = mesh->triangle_count;
     uint32_t i;
-    mesh->positions = vsf__part_float(block, 3 * n);
-    mesh->normals = vsf__part_float(block, 3 * n);
-    mesh->areas = (double *)vsf__part(block, n, sizeof(double));
-    mesh->triangles = vsf__part_u32(block, 3 * m);
-    mesh->opposites = vsf__part_u32(block, 3 * m);
-    mesh->ring_starts = vsf__part_u32(block, n + 1);
-    mesh->ring_corners = vsf__part_u32(block, 3 * m);
-    mesh->borders = (unsigned char *)vsf__part(block, n, 1);
-    mesh->vertex_sources = vsf__part_u32(block, n);
-    mesh->triangle_sources = vsf__part_u32(block, m);
-    mesh->vertex_targets = vsf__part_u32(block, mesh->source_count);
+    mesh->positions = lao__part_float(block, 3 * n);
+    mesh->normals = lao__part_float(block, 3 * n);
+    mesh->areas = (double *)lao__part(block, n, sizeof(double));
+    mesh->triangles = lao__part_u32(block, 3 * m);
+    mesh->opposites = lao__part_u32(block, 3 * m);
+    mesh->ring_starts = lao__part_u32(block, n + 1);
+    mesh->ring_corners = lao__part_u32(block, 3 * m);
+    mesh->borders = (unsigned char *)lao__part(block, n, 1);
+    mesh->vertex_sources = lao__part_u32(block, n);
+    mesh->triangle_sources = lao__part_u32(block, m);
+    mesh->vertex_targets = lao__part_u32(block, mesh->source_count);
     mesh->attributes =
-        (vsf_attribute *)vsf__part(block, mesh->attribute_count, sizeof(vsf_attribute));
+        (vsf_attribute *)lao__part(block, mesh->attribute_count, sizeof(vsf_attribute));
     for (i = 0; i < mesh->attribute_count; i++) {
         uint32_t components = attributes[i].components ? attributes[i].components : 1;
         size_t length = strlen(attributes[i].name) + 1;
-        float *values = vsf__part_float(block, n * components);
-        char *name = (char *)vsf__part(block, length, 1);
+        float *values = lao__part_float(block, n * components);
+        char *name = (char *)lao__part(block, length, 1);
         if (block->base) {
             memcpy(name, attributes[i].name, length);
             mesh->attributes[i].name = name;
@@ -1756,7 +1683,7 @@ static void vsf__log_warnings(const vsf_host *host, const vsf_mesh *mesh) {
 /* The second half: a mesh of what was picked. */
 static lao_result vsf__mesh_finish(vsf__build *b, vsf__progress *progress, vsf_mesh *mesh) {
     vsf_mesh m;
-    vsf__block block = {NULL, 0};
+    lao__block block = {NULL, 0};
     uint32_t v;
     memset(&m, 0, sizeof m);
     m.allocator = vsf__allocator(b->host);
@@ -1765,7 +1692,7 @@ static lao_result vsf__mesh_finish(vsf__build *b, vsf__progress *progress, vsf_m
     m.source_count = b->desc->vertex_count;
     m.attribute_count = b->desc->attribute_count;
     vsf__mesh_parts(&m, b->desc->attributes, &block);
-    m.memory = vsf__take(&m.allocator, block.used, 1);
+    m.memory = lao__take(&m.allocator, block.used, 1);
     if (!m.memory) {
         return vsf__fail(b->host, VSF_LOG_MEMORY, "%u vertices, %u triangles", m.vertex_count,
                          m.triangle_count);
@@ -1834,7 +1761,7 @@ static lao_result vsf__mesh_make(vsf__build *b, vsf_mesh *mesh) {
 VSF_API lao_result vsf_mesh_build(const vsf_host *host, const vsf_mesh_desc *desc, vsf_mesh *mesh) {
     lao_allocator allocator = vsf__allocator(host);
     vsf__build b;
-    vsf__block block = {NULL, 0};
+    lao__block block = {NULL, 0};
     void *memory;
     lao_result result;
     if (!desc || !mesh) {
@@ -1848,7 +1775,7 @@ VSF_API lao_result vsf_mesh_build(const vsf_host *host, const vsf_mesh_desc *des
     b.host = host;
     b.desc = desc;
     vsf__build_parts(&b, &block);
-    memory = vsf__take(&allocator, block.used + 16, 1);
+    memory = lao__take(&allocator, block.used + 16, 1);
     if (!memory) {
         return vsf__fail(host, VSF_LOG_MEMORY, "%u vertices, %u triangles", desc->vertex_count,
                          desc->triangle_count);
@@ -1857,13 +1784,13 @@ VSF_API lao_result vsf_mesh_build(const vsf_host *host, const vsf_mesh_desc *des
     block.used = 0;
     vsf__build_parts(&b, &block);
     result = vsf__mesh_make(&b, mesh);
-    vsf__give(&allocator, memory);
+    lao__give(&allocator, memory);
     return result;
 }
 
 VSF_API void vsf_mesh_free(vsf_mesh *mesh) {
     if (mesh && mesh->memory) {
-        vsf__give(&mesh->allocator, mesh->memory);
+        lao__give(&mesh->allocator, mesh->memory);
     }
     if (mesh) {
         memset(mesh, 0, sizeof *mesh);
@@ -1996,7 +1923,7 @@ static lao_result vsf__smooth_checked(const vsf_host *host, vsf_mesh *mesh, uint
     vsf__progress progress =
         vsf__progress_make(host, (uint64_t)mesh->vertex_count * (2 * (uint64_t)steps + 2));
     vsf__smoother s;
-    vsf__block block = {NULL, 0};
+    lao__block block = {NULL, 0};
     uint64_t n = mesh->vertex_count, round;
     void *memory = NULL;
     size_t i;
@@ -2005,13 +1932,13 @@ static lao_result vsf__smooth_checked(const vsf_host *host, vsf_mesh *mesh, uint
     s.mesh = mesh;
     s.uniform = uniform;
     for (round = 0; round < 2; round++) {
-        s.starts = vsf__part_u32(&block, n + 1);
-        s.neighbours = vsf__part_u32(&block, 6 * (uint64_t)mesh->triangle_count);
-        s.weights = (double *)vsf__part(&block, 6 * (uint64_t)mesh->triangle_count, sizeof(double));
-        s.from = (double *)vsf__part(&block, 3 * n, sizeof(double));
-        s.to = (double *)vsf__part(&block, 3 * n, sizeof(double));
+        s.starts = lao__part_u32(&block, n + 1);
+        s.neighbours = lao__part_u32(&block, 6 * (uint64_t)mesh->triangle_count);
+        s.weights = (double *)lao__part(&block, 6 * (uint64_t)mesh->triangle_count, sizeof(double));
+        s.from = (double *)lao__part(&block, 3 * n, sizeof(double));
+        s.to = (double *)lao__part(&block, 3 * n, sizeof(double));
         if (round == 0) {
-            memory = vsf__take(&allocator, block.used, 1);
+            memory = lao__take(&allocator, block.used, 1);
             if (!memory) {
                 return vsf__fail(host, VSF_LOG_MEMORY, "smoothing");
             }
@@ -2034,7 +1961,7 @@ static lao_result vsf__smooth_checked(const vsf_host *host, vsf_mesh *mesh, uint
         }
         vsf__mesh_shape(&quiet, mesh);
     }
-    vsf__give(&allocator, memory);
+    lao__give(&allocator, memory);
     return cancelled ? vsf__fail(host, VSF_LOG_CANCELLED, NULL) : LAO_OK;
 }
 VSF_API lao_result vsf_mesh_smooth(const vsf_host *host, vsf_mesh *mesh,
@@ -2067,16 +1994,16 @@ typedef struct vsf__loop {
     uint32_t vertex_count;
 } vsf__loop;
 
-static void vsf__loop_parts(vsf__loop *l, vsf__block *block) {
+static void vsf__loop_parts(vsf__loop *l, lao__block *block) {
     uint32_t i;
-    l->edge_vertices = vsf__part_u32(block, 3 * (uint64_t)l->mesh->triangle_count);
-    l->triangles = vsf__part_u32(block, 12 * (uint64_t)l->mesh->triangle_count);
-    l->positions = vsf__part_float(block, 3 * (uint64_t)l->vertex_count);
+    l->edge_vertices = lao__part_u32(block, 3 * (uint64_t)l->mesh->triangle_count);
+    l->triangles = lao__part_u32(block, 12 * (uint64_t)l->mesh->triangle_count);
+    l->positions = lao__part_float(block, 3 * (uint64_t)l->vertex_count);
     l->attributes =
-        (vsf_attribute *)vsf__part(block, l->mesh->attribute_count, sizeof(vsf_attribute));
+        (vsf_attribute *)lao__part(block, l->mesh->attribute_count, sizeof(vsf_attribute));
     for (i = 0; i < l->mesh->attribute_count; i++) {
         uint32_t n = l->mesh->attributes[i].components;
-        float *values = vsf__part_float(block, (uint64_t)l->vertex_count * n);
+        float *values = lao__part_float(block, (uint64_t)l->vertex_count * n);
         if (block->base) {
             l->attributes[i] = l->mesh->attributes[i];
             l->attributes[i].values = values;
@@ -2197,7 +2124,7 @@ static lao_result vsf__subdivide_once(const vsf_host *host, const vsf_mesh *mesh
     lao_allocator allocator = vsf__allocator(host);
     uint64_t vertices = (uint64_t)mesh->vertex_count + vsf__edge_count(mesh);
     vsf__loop l;
-    vsf__block block = {NULL, 0};
+    lao__block block = {NULL, 0};
     vsf_mesh_desc desc;
     lao_result result;
     void *memory;
@@ -2209,7 +2136,7 @@ static lao_result vsf__subdivide_once(const vsf_host *host, const vsf_mesh *mesh
     l.mesh = mesh;
     l.vertex_count = (uint32_t)vertices;
     vsf__loop_parts(&l, &block);
-    memory = vsf__take(&allocator, block.used, 1);
+    memory = lao__take(&allocator, block.used, 1);
     if (!memory) {
         return LAO_ERROR_OUT_OF_MEMORY;
     }
@@ -2240,7 +2167,7 @@ static lao_result vsf__subdivide_once(const vsf_host *host, const vsf_mesh *mesh
     if (result == LAO_OK) {
         finer->source_count = 0;
     }
-    vsf__give(&allocator, memory);
+    lao__give(&allocator, memory);
     return result;
 }
 
@@ -2483,21 +2410,21 @@ typedef struct vsf__coarse {
 } vsf__coarse;
 
 static void vsf__coarse_parts(vsf__coarse *c, const vsf__lattice *l, uint32_t left,
-                              vsf__block *block) {
+                              lao__block *block) {
     const vsf_mesh *mesh = l->mesh;
     uint32_t i;
-    c->positions = vsf__part_float(block, 3 * (uint64_t)l->count);
-    c->triangles = vsf__part_u32(block, 3 * (uint64_t)left);
-    c->sources = vsf__part_u32(block, left);
-    c->firsts = vsf__part_u32(block, l->count);
+    c->positions = lao__part_float(block, 3 * (uint64_t)l->count);
+    c->triangles = lao__part_u32(block, 3 * (uint64_t)left);
+    c->sources = lao__part_u32(block, left);
+    c->firsts = lao__part_u32(block, l->count);
     for (c->mask = 1; c->mask < 2 * (uint64_t)left; c->mask *= 2) {
     }
-    c->table = vsf__part_u32(block, c->mask--);
-    c->sums = (double *)vsf__part(block, mesh->attribute_count ? 2 * (uint64_t)l->count : 0,
+    c->table = lao__part_u32(block, c->mask--);
+    c->sums = (double *)lao__part(block, mesh->attribute_count ? 2 * (uint64_t)l->count : 0,
                                   sizeof(double));
-    c->attributes = (vsf_attribute *)vsf__part(block, mesh->attribute_count, sizeof(vsf_attribute));
+    c->attributes = (vsf_attribute *)lao__part(block, mesh->attribute_count, sizeof(vsf_attribute));
     for (i = 0; i < mesh->attribute_count; i++) {
-        float *values = vsf__part_float(block, (uint64_t)l->count * mesh->attributes[i].components);
+        float *values = lao__part_float(block, (uint64_t)l->count * mesh->attributes[i].components);
         if (block->base) {
             c->attributes[i] = mesh->attributes[i];
             c->attributes[i].values = values;
@@ -2590,29 +2517,29 @@ static lao_result vsf__coarse_build(const vsf_host *host, vsf__lattice *l, vsf__
 static lao_result vsf__decimate_cells(const vsf_host *host, vsf__lattice *l, uint32_t left,
                                       vsf_mesh *coarser) {
     lao_allocator allocator = vsf__allocator(host);
-    vsf__block block = {NULL, 0};
+    lao__block block = {NULL, 0};
     vsf__coarse c;
     lao_result result = LAO_ERROR_OUT_OF_MEMORY;
     void *memory;
     memset(&c, 0, sizeof c);
     vsf__coarse_parts(&c, l, left, &block);
-    memory = vsf__take(&allocator, block.used, 1);
-    l->parts = (vsf__cell *)vsf__take(&allocator, l->count, sizeof *l->parts);
+    memory = lao__take(&allocator, block.used, 1);
+    l->parts = (vsf__cell *)lao__take(&allocator, l->count, sizeof *l->parts);
     if (memory && l->parts) {
         block.base = (unsigned char *)memory;
         block.used = 0;
         vsf__coarse_parts(&c, l, left, &block);
         result = vsf__coarse_build(host, l, &c, left, coarser);
     }
-    vsf__give(&allocator, memory);
-    vsf__give(&allocator, l->parts);
+    lao__give(&allocator, memory);
+    lao__give(&allocator, l->parts);
     return result;
 }
 
-static void vsf__lattice_parts(vsf__lattice *l, vsf__block *block) {
-    l->keys = (uint64_t *)vsf__part(block, l->mesh->vertex_count, sizeof *l->keys);
-    l->cells = vsf__part_u32(block, l->mesh->vertex_count);
-    l->table = vsf__part_u32(block, (uint64_t)l->mask + 1);
+static void vsf__lattice_parts(vsf__lattice *l, lao__block *block) {
+    l->keys = (uint64_t *)lao__part(block, l->mesh->vertex_count, sizeof *l->keys);
+    l->cells = lao__part_u32(block, l->mesh->vertex_count);
+    l->table = lao__part_u32(block, (uint64_t)l->mask + 1);
 }
 
 /* Without words: the caller says what failed. */
@@ -2620,7 +2547,7 @@ static lao_result vsf__decimate(const vsf_host *host, const vsf_mesh *mesh, uint
                                 vsf_mesh *coarser) {
     lao_allocator allocator = vsf__allocator(host);
     vsf__progress progress = vsf__progress_make(host, 20);
-    vsf__block block = {NULL, 0};
+    lao__block block = {NULL, 0};
     vsf__lattice l;
     lao_result result = LAO_ERROR_OUT_OF_MEMORY;
     void *memory;
@@ -2636,7 +2563,7 @@ static lao_result vsf__decimate(const vsf_host *host, const vsf_mesh *mesh, uint
     }
     l.mask--;
     vsf__lattice_parts(&l, &block);
-    memory = vsf__take(&allocator, block.used, 1);
+    memory = lao__take(&allocator, block.used, 1);
     if (memory) {
         block.base = (unsigned char *)memory;
         block.used = 0;
@@ -2644,7 +2571,7 @@ static lao_result vsf__decimate(const vsf_host *host, const vsf_mesh *mesh, uint
         result = vsf__cells_fit(&progress, &l, most)
                      ? LAO_ERROR_NOT_READY
                      : vsf__decimate_cells(host, &l, vsf__cells_left(&l), coarser);
-        vsf__give(&allocator, memory);
+        lao__give(&allocator, memory);
     }
     return result;
 }
@@ -2894,11 +2821,11 @@ static void vsf__ring_fill(void *arg, uint32_t first, uint32_t end) {
     }
 }
 
-static void vsf__buffers_parts(vsf_buffers *b, vsf__block *block) {
-    b->points = vsf__part_float(block, 4 * (uint64_t)b->vertex_count);
-    b->normals = vsf__part_float(block, 4 * (uint64_t)b->vertex_count);
-    b->rings = vsf__part_float(block, 4 * (uint64_t)b->ring_count);
-    b->triangles = vsf__part_float(block, 4 * (uint64_t)b->triangle_count);
+static void vsf__buffers_parts(vsf_buffers *b, lao__block *block) {
+    b->points = lao__part_float(block, 4 * (uint64_t)b->vertex_count);
+    b->normals = lao__part_float(block, 4 * (uint64_t)b->vertex_count);
+    b->rings = lao__part_float(block, 4 * (uint64_t)b->ring_count);
+    b->triangles = lao__part_float(block, 4 * (uint64_t)b->triangle_count);
 }
 
 /* What a device cannot take is said before any memory is taken. */
@@ -2935,7 +2862,7 @@ static lao_result vsf__buffers_check(const vsf_host *host, const vsf_mesh *mesh,
 VSF_API lao_result vsf_buffers_make(const vsf_host *host, const vsf_mesh *mesh, uint32_t max_texels,
                                     vsf_buffers *buffers) {
     vsf_buffers b;
-    vsf__block block = {NULL, 0};
+    lao__block block = {NULL, 0};
     vsf__progress progress;
     vsf__ringer ringer;
     uint32_t *starts, i;
@@ -2953,11 +2880,11 @@ VSF_API lao_result vsf_buffers_make(const vsf_host *host, const vsf_mesh *mesh, 
         return result;
     }
     vsf__buffers_parts(&b, &block);
-    b.memory = vsf__take(&b.allocator, block.used, 1);
-    starts = (uint32_t *)vsf__take(&b.allocator, (uint64_t)mesh->vertex_count + 1, sizeof *starts);
+    b.memory = lao__take(&b.allocator, block.used, 1);
+    starts = (uint32_t *)lao__take(&b.allocator, (uint64_t)mesh->vertex_count + 1, sizeof *starts);
     if (!b.memory || !starts) {
-        vsf__give(&b.allocator, b.memory);
-        vsf__give(&b.allocator, starts);
+        lao__give(&b.allocator, b.memory);
+        lao__give(&b.allocator, starts);
         return vsf__fail(host, VSF_LOG_MEMORY, "buffers of %u triangles", mesh->triangle_count);
     }
     block.base = (unsigned char *)b.memory;
@@ -2981,7 +2908,7 @@ VSF_API lao_result vsf_buffers_make(const vsf_host *host, const vsf_mesh *mesh, 
     if (vsf__run(&progress, mesh->vertex_count, VSF__CHUNK, &ringer, vsf__ring_fill)) {
         result = vsf__fail(host, VSF_LOG_CANCELLED, NULL);
     }
-    vsf__give(&b.allocator, starts);
+    lao__give(&b.allocator, starts);
     if (result != LAO_OK) {
         vsf_buffers_free(&b);
         return result;
@@ -2992,7 +2919,7 @@ VSF_API lao_result vsf_buffers_make(const vsf_host *host, const vsf_mesh *mesh, 
 
 VSF_API void vsf_buffers_free(vsf_buffers *buffers) {
     if (buffers && buffers->memory) {
-        vsf__give(&buffers->allocator, buffers->memory);
+        lao__give(&buffers->allocator, buffers->memory);
     }
     if (buffers) {
         memset(buffers, 0, sizeof *buffers);
@@ -3315,7 +3242,7 @@ static void vsf__feature_all(vsf__features *f) {
 
 static lao_result vsf__features_out(const vsf_host *host, vsf__features *f, vsf_polylines *lines) {
     vsf_polylines out;
-    vsf__block block = {NULL, 0};
+    lao__block block = {NULL, 0};
     int round;
     memset(&out, 0, sizeof out);
     out.allocator = vsf__allocator(host);
@@ -3323,12 +3250,12 @@ static lao_result vsf__features_out(const vsf_host *host, vsf__features *f, vsf_
     out.line_count = f->line_count;
     out.point_count = f->point_count;
     for (round = 0; round < 2; round++) {
-        out.offsets = vsf__part_u32(&block, (uint64_t)f->line_count + 1);
+        out.offsets = lao__part_u32(&block, (uint64_t)f->line_count + 1);
         /* room for the single points that are taken back */
-        out.points = vsf__part_float(&block, 3 * ((uint64_t)f->point_count + 2));
-        out.values = vsf__part_float(&block, (uint64_t)f->point_count + 2);
+        out.points = lao__part_float(&block, 3 * ((uint64_t)f->point_count + 2));
+        out.values = lao__part_float(&block, (uint64_t)f->point_count + 2);
         if (round == 0) {
-            out.memory = vsf__take(&out.allocator, block.used, 1);
+            out.memory = lao__take(&out.allocator, block.used, 1);
             if (!out.memory) {
                 return vsf__fail(host, VSF_LOG_MEMORY, "%u points of lines", f->point_count);
             }
@@ -3366,11 +3293,11 @@ VSF_API lao_result vsf_feature_lines(const vsf_host *host, const vsf_mesh *mesh,
     }
     memset(&f, 0, sizeof f);
     n = mesh->vertex_count;
-    values = (float *)vsf__take(&allocator, 3 * (uint64_t)n, sizeof(float));
-    f.seen = (unsigned char *)vsf__take(&allocator, mesh->triangle_count, 1);
+    values = (float *)lao__take(&allocator, 3 * (uint64_t)n, sizeof(float));
+    f.seen = (unsigned char *)lao__take(&allocator, mesh->triangle_count, 1);
     if (!values || !f.seen) {
-        vsf__give(&allocator, values);
-        vsf__give(&allocator, f.seen);
+        lao__give(&allocator, values);
+        lao__give(&allocator, f.seen);
         return vsf__fail(host, VSF_LOG_MEMORY, "feature lines");
     }
     f.mesh = mesh;
@@ -3397,14 +3324,14 @@ VSF_API lao_result vsf_feature_lines(const vsf_host *host, const vsf_mesh *mesh,
     }
     result = result == LAO_OK ? vsf__features_out(host, &f, lines)
                               : vsf__fail(host, VSF_LOG_CANCELLED, NULL);
-    vsf__give(&allocator, values);
-    vsf__give(&allocator, f.seen);
+    lao__give(&allocator, values);
+    lao__give(&allocator, f.seen);
     return result;
 }
 
 VSF_API void vsf_polylines_free(vsf_polylines *lines) {
     if (lines && lines->memory) {
-        vsf__give(&lines->allocator, lines->memory);
+        lao__give(&lines->allocator, lines->memory);
     }
     if (lines) {
         memset(lines, 0, sizeof *lines);
@@ -3602,15 +3529,15 @@ static void vsf__order_tracks(vsf__index *x, const vsf__track *tracks, vsf__code
     }
 }
 
-static void vsf__index_parts(vsf__index *x, vsf__block *block) {
-    x->positions = vsf__part_float(block, 3 * (uint64_t)x->vertex_count);
-    x->vertices = vsf__part_u32(block, x->vertex_count);
-    x->tracks = (vsf__track *)vsf__part(block, x->track_count, sizeof(vsf__track));
+static void vsf__index_parts(vsf__index *x, lao__block *block) {
+    x->positions = lao__part_float(block, 3 * (uint64_t)x->vertex_count);
+    x->vertices = lao__part_u32(block, x->vertex_count);
+    x->tracks = (vsf__track *)lao__part(block, x->track_count, sizeof(vsf__track));
 }
 static void vsf__index_free(const lao_allocator *allocator, vsf__index *x) {
     if (x) {
-        vsf__give(allocator, x->memory);
-        vsf__give(allocator, x);
+        lao__give(allocator, x->memory);
+        lao__give(allocator, x);
     }
 }
 static void vsf__index_fill(vsf__index *x, const vsf_near_desc *desc, vsf__track *tracks,
@@ -3635,8 +3562,8 @@ static void vsf__index_fill(vsf__index *x, const vsf_near_desc *desc, vsf__track
     vsf__order_tracks(x, tracks, codes, low, scale);
 }
 static vsf__index *vsf__index_make(const lao_allocator *allocator, const vsf_near_desc *desc) {
-    vsf__index *x = (vsf__index *)vsf__take(allocator, 1, sizeof *x);
-    vsf__block block = {NULL, 0};
+    vsf__index *x = (vsf__index *)lao__take(allocator, 1, sizeof *x);
+    lao__block block = {NULL, 0};
     vsf__track *tracks;
     vsf__coded *codes;
     uint64_t most;
@@ -3648,10 +3575,10 @@ static vsf__index *vsf__index_make(const lao_allocator *allocator, const vsf_nea
     x->track_count = vsf__tracks(desc, NULL);
     x->period = desc->period;
     vsf__index_parts(x, &block);
-    x->memory = vsf__take(allocator, block.used, 1);
+    x->memory = lao__take(allocator, block.used, 1);
     most = x->vertex_count > x->track_count ? x->vertex_count : x->track_count;
-    tracks = (vsf__track *)vsf__take(allocator, x->track_count, sizeof *tracks);
-    codes = (vsf__coded *)vsf__take(allocator, 2 * most, sizeof *codes);
+    tracks = (vsf__track *)lao__take(allocator, x->track_count, sizeof *tracks);
+    codes = (vsf__coded *)lao__take(allocator, 2 * most, sizeof *codes);
     if (x->memory && tracks && codes) {
         block.base = (unsigned char *)x->memory;
         block.used = 0;
@@ -3661,8 +3588,8 @@ static vsf__index *vsf__index_make(const lao_allocator *allocator, const vsf_nea
         vsf__index_free(allocator, x);
         x = NULL;
     }
-    vsf__give(allocator, tracks);
-    vsf__give(allocator, codes);
+    lao__give(allocator, tracks);
+    lao__give(allocator, codes);
     return x;
 }
 
@@ -3757,7 +3684,7 @@ static void vsf__lit_boxes(vsf__lit *lit) {
 /* Pieces lit at a time and the boxes above them. Returns 0, or -1 without memory. */
 static int vsf__lit_make(const lao_allocator *allocator, const vsf__index *x, double time,
                          double reach, vsf__lit *lit) {
-    vsf__block block = {NULL, 0};
+    lao__block block = {NULL, 0};
     uint64_t pieces = 0, boxes = 0, below;
     uint32_t i;
     memset(lit, 0, sizeof *lit);
@@ -3775,10 +3702,10 @@ static int vsf__lit_make(const lao_allocator *allocator, const vsf__index *x, do
         boxes += lit->count[lit->level_count];
     }
     for (i = 0; i < 2; i++) {
-        lit->pieces = (vsf__piece *)vsf__part(&block, pieces, sizeof(vsf__piece));
-        lit->boxes = (vsf__box *)vsf__part(&block, boxes, sizeof(vsf__box));
+        lit->pieces = (vsf__piece *)lao__part(&block, pieces, sizeof(vsf__piece));
+        lit->boxes = (vsf__box *)lao__part(&block, boxes, sizeof(vsf__box));
         if (i == 0) {
-            lit->memory = vsf__take(allocator, block.used, 1);
+            lit->memory = lao__take(allocator, block.used, 1);
             if (!lit->memory) {
                 return -1;
             }
@@ -4040,7 +3967,7 @@ static lao_result vsf__near_time(vsf__progress *progress, const vsf_near *n, dou
     query->brute = (n->flags & VSF_NEAR_BRUTE) != 0;
     cancelled = vsf__run(progress, x->vertex_count, 512, query, vsf__query_vertices);
     *lit_count += query->lit.piece_count;
-    vsf__give(&allocator, query->lit.memory);
+    lao__give(&allocator, query->lit.memory);
     query->lit.memory = NULL;
     return cancelled ? vsf__fail(progress->host, VSF_LOG_CANCELLED, NULL) : LAO_OK;
 }
@@ -4051,11 +3978,11 @@ static lao_result vsf__near_fill(const vsf_host *host, vsf_near *n, const vsf_ne
     uint64_t *counts;
     uint32_t step;
     lao_result result = LAO_OK;
-    n->values = vsf__take(&n->allocator, values, n->bytes);
-    counts = (uint64_t *)vsf__take(&n->allocator, 65536, sizeof *counts);
+    n->values = lao__take(&n->allocator, values, n->bytes);
+    counts = (uint64_t *)lao__take(&n->allocator, 65536, sizeof *counts);
     if (!n->values || !counts) {
-        vsf__give(&n->allocator, n->values);
-        vsf__give(&n->allocator, counts);
+        lao__give(&n->allocator, n->values);
+        lao__give(&n->allocator, counts);
         n->values = NULL;
         return vsf__fail(host, VSF_LOG_MEMORY, "%u vertices at %u times", n->vertex_count,
                          n->step_count);
@@ -4073,10 +4000,10 @@ static lao_result vsf__near_fill(const vsf_host *host, vsf_near *n, const vsf_ne
     if (result == LAO_OK) {
         n->gamma = vsf__gamma(n, counts);
     } else {
-        vsf__give(&n->allocator, n->values);
+        lao__give(&n->allocator, n->values);
         n->values = NULL;
     }
-    vsf__give(&n->allocator, counts);
+    lao__give(&n->allocator, counts);
     return result;
 }
 
@@ -4140,7 +4067,7 @@ static double vsf__kth(const uint32_t *values, uint32_t count, uint32_t k) {
 static int vsf__median_time(const lao_allocator *allocator, const vsf_near_desc *desc,
                             double *median, double *last) {
     uint32_t lines = desc->offsets ? desc->line_count : desc->point_count != 0, i, line, count = 0;
-    uint32_t *times = (uint32_t *)vsf__take(allocator, lines, sizeof *times);
+    uint32_t *times = (uint32_t *)lao__take(allocator, lines, sizeof *times);
     *median = *last = 0;
     if (!times) {
         return -1;
@@ -4160,7 +4087,7 @@ static int vsf__median_time(const lao_allocator *allocator, const vsf_near_desc 
             0.5 * (vsf__kth(times, count, (count - 1) / 2) + vsf__kth(times, count, count / 2));
         *last = vsf__kth(times, count, count - 1);
     }
-    vsf__give(allocator, times);
+    lao__give(allocator, times);
     return 0;
 }
 
@@ -4203,7 +4130,7 @@ VSF_API lao_result vsf_near_make(const vsf_host *host, const vsf_near_desc *desc
 VSF_API void vsf_near_free(vsf_near *table) {
     if (table && table->index) {
         vsf__index_free(&table->allocator, (vsf__index *)table->index);
-        vsf__give(&table->allocator, table->values);
+        lao__give(&table->allocator, table->values);
     }
     if (table) {
         memset(table, 0, sizeof *table);
@@ -4224,7 +4151,7 @@ VSF_API lao_result vsf_near_update(const vsf_host *host, vsf_near *table, double
     vsf__near_beta(&n, beta);
     result = vsf__near_fill(host, &n, table);
     if (result == LAO_OK) {
-        vsf__give(&table->allocator, table->values);
+        lao__give(&table->allocator, table->values);
         *table = n;
     }
     return result;
@@ -4447,7 +4374,7 @@ VSF_API lao_result vsf_object_make(const vsf_host *host, const vsf_mesh *mesh, u
                          "distances of %u vertices need %u texels, the device has %u", n, 2 * n,
                          max_texels);
     }
-    extra = (float *)vsf__take(&a, 3 * (uint64_t)n + (uint64_t)4 * VSF_MAP_COLORS, sizeof *extra);
+    extra = (float *)lao__take(&a, 3 * (uint64_t)n + (uint64_t)4 * VSF_MAP_COLORS, sizeof *extra);
     if (!extra) {
         vsf_buffers_free(&buffers);
         return vsf__fail(host, VSF_LOG_MEMORY, "distances of %u vertices", n);
@@ -4478,7 +4405,7 @@ VSF_API lao_result vsf_object_make(const vsf_host *host, const vsf_mesh *mesh, u
 
 VSF_API void vsf_object_free(vsf_object *object) {
     if (object && object->near_pair) {
-        vsf__give(&object->allocator, object->near_pair);
+        lao__give(&object->allocator, object->near_pair);
         vsf_buffers_free(&object->buffers);
         memset(object, 0, sizeof *object);
     }

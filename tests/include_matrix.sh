@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
 # Proves that each public header compiles alone and twice, as C99, C11, C++11 and C++20, without a warning, that two
-# translation units of one program can include it, and that the implementations and executors compile by hand.
+# translation units of one program can include it, that each implementation links without the others, and that the
+# executors compile by hand.
 set -u
 root=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
 scratch=$(mktemp -d)
@@ -58,6 +59,9 @@ implementation() { # every header's implementation, on standard output
 
 for header in "${headers[@]}"; do
   printf '#include "%s"\n#include "%s"\nint one_declaration;\n' "$header" "$header" >"${header%.h}_alone.c"
+  macro=${header%.h}_IMPLEMENTATION
+  printf '#include "%s"\n#define %s\n#include "%s"\nint main(void) { return 0; }\n' "$header" "${macro^^}" "$header" \
+    >"${header%.h}_only.c"
 done
 implementation >first.c
 printf '#include "%s"\n' "${headers[@]}" >second.c
@@ -88,6 +92,9 @@ for compiler in "${compilers[@]}"; do
       try "$compiler $standard implementation, then headers" "${as[@]}" -fsyntax-only third.c
       try "$compiler $standard two units" "${as[@]}" first.c second.c -x none -lm -o program
       try "$compiler $standard two units, run" ./program
+      for header in "${headers[@]}"; do
+        try "$compiler $standard implementation of $header only" "${as[@]}" "${header%.h}_only.c" -x none -lm -o program
+      done
       ;;
     esac
   done

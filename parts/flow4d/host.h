@@ -1,28 +1,17 @@
 /* ================================================================================================
- * host: failures, memory and work, as the host wants them; sizes and affine maps of lattices. The
-   implementation begins here and ends with the last section; all of it uses the interface. */
+ * host: failures and work, as the host wants them; sizes and affine maps of lattices. Memory comes
+   from lineao.h (its section host). The implementation begins here and ends with the last section;
+   all of it uses the interface and lineao.h's host. */
 #ifdef FLOW4D_IMPLEMENTATION
 #ifndef FLOW4D_IMPLEMENTATION_DONE
 #define FLOW4D_IMPLEMENTATION_DONE
 
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
+#define LAO__HOST
+#include "lineao.h"
 
 #ifdef __cplusplus
 extern "C" {
 #endif
-
-static void *flow4d__default_allocate(void *user, size_t size) {
-    (void)user;
-    return malloc(size);
-}
-
-static void flow4d__default_release(void *user, void *memory, size_t size) {
-    (void)user;
-    (void)size;
-    free(memory);
-}
 
 /* The host with an allocator that works. */
 static flow4d_host flow4d__host(const flow4d_host *host) {
@@ -31,32 +20,8 @@ static flow4d_host flow4d__host(const flow4d_host *host) {
     if (host) {
         h = *host;
     }
-    if (!h.allocator.allocate || !h.allocator.release) {
-        h.allocator.allocate = flow4d__default_allocate;
-        h.allocator.release = flow4d__default_release;
-        h.allocator.user = NULL;
-    }
+    h.allocator = lao__allocator_or_default(&h.allocator);
     return h;
-}
-
-/* Zeroed memory for count items; NULL for none, on overflow or when there is no memory. */
-static void *flow4d__new(const lao_allocator *allocator, size_t count, size_t size) {
-    void *memory;
-    if (count == 0 || count > (size_t)-1 / size) {
-        return NULL;
-    }
-    memory = allocator->allocate(allocator->user, count * size);
-    if (memory) {
-        memset(memory, 0, count * size);
-    }
-    return memory;
-}
-
-static void flow4d__delete(const lao_allocator *allocator, void *memory, size_t count,
-                           size_t size) {
-    if (memory) {
-        allocator->release(allocator->user, memory, count * size);
-    }
 }
 
 static lao_result flow4d__fail(const flow4d_host *host, flow4d_log_item item, const char *detail) {
@@ -82,23 +47,6 @@ static lao_result flow4d__setting_fail(const flow4d_host *host, const char *name
     return flow4d__fail(host, FLOW4D_LOG_SETTING, text);
 }
 
-static void flow4d__run(const flow4d_host *host, uint32_t count, void (*fn)(void *, uint32_t),
-                        void *arg) {
-    uint32_t i;
-    if (host->job.run) {
-        host->job.run(host->job.user, count, fn, arg);
-        return;
-    }
-    for (i = 0; i < count; i++) {
-        fn(arg, i);
-    }
-}
-
-/* Not 0: the host wants no more. */
-static int flow4d__progress(const flow4d_host *host, uint64_t done, uint64_t total) {
-    return host->job.progress && host->job.progress(host->job.user, done, total);
-}
-
 typedef struct flow4d__part {
     void (*fn)(void *arg, size_t index);
     void *arg;
@@ -119,9 +67,9 @@ static lao_result flow4d__work(const flow4d_host *host, const char *name, size_t
     for (part.first = 0; part.first < count;) {
         size_t left = count - part.first;
         uint32_t now = left < 64 ? (uint32_t)left : 64u;
-        flow4d__run(host, now, flow4d__part_run, &part);
+        lao__job_run(&host->job, now, flow4d__part_run, &part);
         part.first += now;
-        if (flow4d__progress(host, part.first, count)) {
+        if (lao__job_cancelled(&host->job, part.first, count)) {
             return flow4d__fail(host, FLOW4D_LOG_CANCELLED, name);
         }
     }

@@ -163,7 +163,7 @@ static lao_result flow4d__rows_make(const flow4d_host *host, const flow4d_field 
     if (!field->mask || mode == FLOW4D_MASK_NONE) {
         return LAO_OK;
     }
-    rows->before = (uint64_t *)flow4d__new(&host->allocator, rows->count, sizeof(uint64_t));
+    rows->before = (uint64_t *)lao__new(&host->allocator, rows->count, sizeof(uint64_t));
     if (!rows->before) {
         return flow4d__fail(host, FLOW4D_LOG_MEMORY, "rows of the mask");
     }
@@ -277,7 +277,7 @@ static int flow4d__points_make(const flow4d_host *host, uint32_t attributes, siz
     if (count == 0) {
         return 0;
     }
-    points->memory = (float *)flow4d__new(&host->allocator, count, floats * sizeof(float));
+    points->memory = (float *)lao__new(&host->allocator, count, floats * sizeof(float));
     if (!points->memory) {
         return -1;
     }
@@ -296,8 +296,8 @@ static int flow4d__points_make(const flow4d_host *host, uint32_t attributes, siz
 
 static void flow4d__points_free(const flow4d_host *host, uint32_t attributes,
                                 flow4d__points *points) {
-    flow4d__delete(&host->allocator, points->memory, points->count,
-                   flow4d__floats(attributes) * sizeof(float));
+    lao__delete(&host->allocator, points->memory, points->count,
+                flow4d__floats(attributes) * sizeof(float));
     memset(points, 0, sizeof *points);
 }
 
@@ -511,7 +511,8 @@ static lao_result flow4d__batch(const flow4d_host *host, flow4d__trace *trace,
                                 flow4d__points *packed) {
     uint32_t i;
     size_t count = 0, where = 0;
-    flow4d__run(host, (trace->now + FLOW4D__CHUNK - 1) / FLOW4D__CHUNK, flow4d__chunk, trace);
+    lao__job_run(&host->job, (trace->now + FLOW4D__CHUNK - 1) / FLOW4D__CHUNK, flow4d__chunk,
+                 trace);
     for (i = 0; i < trace->now; i++) {
         count += trace->counts[trace->first + i];
     }
@@ -538,7 +539,8 @@ static lao_result flow4d__batches(const flow4d_host *host, flow4d__trace *trace,
         trace->first = done;
         trace->now = lines - done < trace->lines ? lines - done : trace->lines;
         result = flow4d__batch(host, trace, &batches[b]);
-        if (result == LAO_OK && flow4d__progress(host, (uint64_t)done + trace->now, lines)) {
+        if (result == LAO_OK &&
+            lao__job_cancelled(&host->job, (uint64_t)done + trace->now, lines)) {
             result = flow4d__fail(host, FLOW4D_LOG_CANCELLED, "flow4d_trace");
         }
     }
@@ -556,15 +558,15 @@ static lao_result flow4d__lines_make(const flow4d_host *host, uint32_t attribute
     lines->allocator = *a;
     lines->line_count = lines->line_room = line_count;
     lines->point_count = lines->point_room = point_count;
-    lines->offsets = (uint32_t *)flow4d__new(a, (size_t)line_count + 1, sizeof(uint32_t));
-    lines->points = view->points = (float *)flow4d__new(a, n, 3 * size);
-    lines->times = view->times = (float *)flow4d__new(a, n, size);
-    lines->speeds = view->speeds = (float *)flow4d__new(a, n, size);
+    lines->offsets = (uint32_t *)lao__new(a, (size_t)line_count + 1, sizeof(uint32_t));
+    lines->points = view->points = (float *)lao__new(a, n, 3 * size);
+    lines->times = view->times = (float *)lao__new(a, n, size);
+    lines->speeds = view->speeds = (float *)lao__new(a, n, size);
     if (attributes & FLOW4D_VORTICITY) {
-        lines->vorticity = view->vorticity = (float *)flow4d__new(a, n, size);
+        lines->vorticity = view->vorticity = (float *)lao__new(a, n, size);
     }
     if (attributes & FLOW4D_CURVATURE) {
-        lines->curvature = view->curvature = (float *)flow4d__new(a, n, size);
+        lines->curvature = view->curvature = (float *)lao__new(a, n, size);
     }
     if (!lines->offsets || (n && (!lines->points || !lines->times || !lines->speeds)) ||
         (n && (attributes & FLOW4D_VORTICITY) && !lines->vorticity) ||
@@ -622,9 +624,9 @@ static lao_result flow4d__trace_lines(const flow4d_host *host, flow4d__trace *tr
     trace->lines = FLOW4D__BATCH_POINTS / trace->slot;
     trace->lines = trace->lines < 1 ? 1 : trace->lines < line_count ? trace->lines : line_count;
     batch_count = (size_t)line_count / trace->lines + (line_count % trace->lines != 0);
-    batches = (flow4d__points *)flow4d__new(a, batch_count, sizeof *batches);
-    trace->begins = (uint32_t *)flow4d__new(a, trace->lines, sizeof(uint32_t));
-    trace->counts = (uint32_t *)flow4d__new(a, line_count, sizeof(uint32_t));
+    batches = (flow4d__points *)lao__new(a, batch_count, sizeof *batches);
+    trace->begins = (uint32_t *)lao__new(a, trace->lines, sizeof(uint32_t));
+    trace->counts = (uint32_t *)lao__new(a, line_count, sizeof(uint32_t));
     if (!batches || !trace->begins || !trace->counts ||
         flow4d__points_make(host, attributes, (size_t)trace->lines * trace->slot,
                             &trace->scratch) != 0) {
@@ -639,9 +641,9 @@ static lao_result flow4d__trace_lines(const flow4d_host *host, flow4d__trace *tr
     for (b = 0; batches && b < batch_count; b++) {
         flow4d__points_free(host, attributes, &batches[b]);
     }
-    flow4d__delete(a, batches, batch_count, sizeof *batches);
-    flow4d__delete(a, trace->begins, trace->lines, sizeof(uint32_t));
-    flow4d__delete(a, trace->counts, line_count, sizeof(uint32_t));
+    lao__delete(a, batches, batch_count, sizeof *batches);
+    lao__delete(a, trace->begins, trace->lines, sizeof(uint32_t));
+    lao__delete(a, trace->counts, line_count, sizeof(uint32_t));
     return result;
 }
 
@@ -682,7 +684,7 @@ lao_result flow4d_trace(const flow4d_host *host, const flow4d_field *field,
         if (result == LAO_OK) {
             result = flow4d__trace_lines(&h, &trace, &made);
         }
-        flow4d__delete(&h.allocator, trace.rows.before, trace.rows.count, sizeof(uint64_t));
+        lao__delete(&h.allocator, trace.rows.before, trace.rows.count, sizeof(uint64_t));
     }
     if (result == LAO_OK) {
         *lines = made;
@@ -696,13 +698,12 @@ void flow4d_lines_free(flow4d_lines *lines) {
         return;
     }
     n = lines->point_room;
-    flow4d__delete(&lines->allocator, lines->offsets, (size_t)lines->line_room + 1,
-                   sizeof(uint32_t));
-    flow4d__delete(&lines->allocator, lines->points, n, 3 * sizeof(float));
-    flow4d__delete(&lines->allocator, lines->times, n, sizeof(float));
-    flow4d__delete(&lines->allocator, lines->speeds, n, sizeof(float));
-    flow4d__delete(&lines->allocator, lines->vorticity, n, sizeof(float));
-    flow4d__delete(&lines->allocator, lines->curvature, n, sizeof(float));
+    lao__delete(&lines->allocator, lines->offsets, (size_t)lines->line_room + 1, sizeof(uint32_t));
+    lao__delete(&lines->allocator, lines->points, n, 3 * sizeof(float));
+    lao__delete(&lines->allocator, lines->times, n, sizeof(float));
+    lao__delete(&lines->allocator, lines->speeds, n, sizeof(float));
+    lao__delete(&lines->allocator, lines->vorticity, n, sizeof(float));
+    lao__delete(&lines->allocator, lines->curvature, n, sizeof(float));
     memset(lines, 0, sizeof *lines);
 }
 

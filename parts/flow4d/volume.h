@@ -367,7 +367,7 @@ static lao_result flow4d__march_run(const flow4d_host *host, flow4d__march *m, s
         memcpy(m->along[1], along, sizeof along);
         m->inside[0] = m->inside[1];
         m->inside[1] = inside;
-        if (flow4d__progress(host, done + z + 1, 2 * (uint64_t)slices)) {
+        if (lao__job_cancelled(&host->job, done + z + 1, 2 * (uint64_t)slices)) {
             return flow4d__fail(host, FLOW4D_LOG_CANCELLED, "flow4d_surface_make");
         }
     }
@@ -392,9 +392,9 @@ static lao_result flow4d__march_make(const flow4d_host *host, flow4d__march *m,
     }
     surface->vertex_count = (uint32_t)m->vertex_count;
     surface->triangle_count = (uint32_t)m->triangle_count;
-    surface->vertices = (float *)flow4d__new(&host->allocator, surface->vertex_count, size);
+    surface->vertices = (float *)lao__new(&host->allocator, surface->vertex_count, size);
     surface->triangles =
-        (uint32_t *)flow4d__new(&host->allocator, surface->triangle_count, 3 * sizeof(uint32_t));
+        (uint32_t *)lao__new(&host->allocator, surface->triangle_count, 3 * sizeof(uint32_t));
     if (!surface->vertices || !surface->triangles) {
         result = flow4d__fail(host, FLOW4D_LOG_MEMORY, "the surface");
     } else {
@@ -444,7 +444,7 @@ static void flow4d__smooth(float *values, const uint32_t size[3]) {
 static float *flow4d__smoothed(const flow4d_host *host, const flow4d_volume *volume,
                                uint32_t passes) {
     size_t i, count = flow4d__count(volume->size, 1, sizeof(float));
-    float *values = (float *)flow4d__new(&host->allocator, count, sizeof(float));
+    float *values = (float *)lao__new(&host->allocator, count, sizeof(float));
     for (i = 0; values && i < count; i++) {
         values[i] = (float)flow4d__value(volume, i);
     }
@@ -458,8 +458,8 @@ static float *flow4d__smoothed(const flow4d_host *host, const flow4d_volume *vol
 static lao_result flow4d__march_memory(const flow4d_host *host, flow4d__march *m,
                                        flow4d_surface *surface) {
     const lao_allocator *a = &host->allocator;
-    uint32_t *words = (uint32_t *)flow4d__new(a, m->row, 5 * sizeof(uint32_t));
-    uint8_t *flags = (uint8_t *)flow4d__new(a, m->row, 2);
+    uint32_t *words = (uint32_t *)lao__new(a, m->row, 5 * sizeof(uint32_t));
+    uint8_t *flags = (uint8_t *)lao__new(a, m->row, 2);
     lao_result result;
     if (!words || !flags) {
         result = flow4d__fail(host, FLOW4D_LOG_MEMORY, "slices of the surface");
@@ -473,8 +473,8 @@ static lao_result flow4d__march_memory(const flow4d_host *host, flow4d__march *m
         m->across = words + 4 * m->row;
         result = flow4d__march_make(host, m, surface);
     }
-    flow4d__delete(a, words, m->row, 5 * sizeof(uint32_t));
-    flow4d__delete(a, flags, m->row, 2);
+    lao__delete(a, words, m->row, 5 * sizeof(uint32_t));
+    lao__delete(a, flags, m->row, 2);
     return result;
 }
 
@@ -521,8 +521,7 @@ lao_result flow4d_surface_make(const flow4d_host *host, const flow4d_volume *vol
     m.mirrored = flow4d__determinant(volume->to_world) < 0.0;
     m.width = padded[0];
     result = flow4d__march_memory(&h, &m, &made);
-    flow4d__delete(&h.allocator, smooth, flow4d__count(volume->size, 1, sizeof(float)),
-                   sizeof(float));
+    lao__delete(&h.allocator, smooth, flow4d__count(volume->size, 1, sizeof(float)), sizeof(float));
     if (result == LAO_OK) {
         *surface = made;
     }
@@ -533,10 +532,9 @@ void flow4d_surface_free(flow4d_surface *surface) {
     if (!surface || !surface->allocator.release) {
         return;
     }
-    flow4d__delete(&surface->allocator, surface->vertices, surface->vertex_count,
-                   3 * sizeof(float));
-    flow4d__delete(&surface->allocator, surface->triangles, surface->triangle_count,
-                   3 * sizeof(uint32_t));
+    lao__delete(&surface->allocator, surface->vertices, surface->vertex_count, 3 * sizeof(float));
+    lao__delete(&surface->allocator, surface->triangles, surface->triangle_count,
+                3 * sizeof(uint32_t));
     memset(surface, 0, sizeof *surface);
 }
 

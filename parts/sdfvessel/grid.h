@@ -290,10 +290,10 @@ static void sdv__cones_take(const sdv_tree *tree, sdv_grid *g) {
     uint64_t texels = 2 * (uint64_t)g->cone_count;
     uint64_t forms = sdv__has_forms(tree) ? 3 * (uint64_t)g->cone_count : 0;
     uint64_t sections = forms ? tree->node_count : 0;
-    g->cones = (lao_v4 *)sdv__take(&g->allocator, texels + forms + sections, sizeof *g->cones);
+    g->cones = (lao_v4 *)lao__take(&g->allocator, texels + forms + sections, sizeof *g->cones);
     g->forms = g->cones && forms ? g->cones + texels : NULL;
     g->sections = g->forms ? g->forms + forms : NULL;
-    g->cone_nodes = (uint32_t *)sdv__take(&g->allocator, texels, sizeof *g->cone_nodes);
+    g->cone_nodes = (uint32_t *)lao__take(&g->allocator, texels, sizeof *g->cone_nodes);
 }
 static void sdv__cones_fill(const sdv_tree *tree, sdv_grid *g) {
     uint32_t i, n = tree->segment_count;
@@ -684,7 +684,7 @@ static uint32_t *sdv__bin_cones(const sdv_grid *g, uint32_t *first) {
         first[z] = (uint32_t)sum;
         sum += n;
     }
-    binned = sum < SDV_NONE ? (uint32_t *)sdv__take(&g->allocator, sum, sizeof *binned) : NULL;
+    binned = sum < SDV_NONE ? (uint32_t *)lao__take(&g->allocator, sum, sizeof *binned) : NULL;
     for (i = 0; binned && i < g->cone_count; i++) {
         sdv__raster_layers(g, g->cones + 2 * (size_t)i, range);
         for (z = range[0]; z < range[1]; z++) { /* first = the next free place, */
@@ -730,14 +730,14 @@ static lao_result sdv__grid_fill(sdv__work *work, sdv_grid *g, uint32_t *first,
     if (!cancelled) {
         sum = sdv__layer_starts(g, layer_ids);
         g->id_count = g->id_room = (uint32_t)sum;
-        g->ids = sum <= SDV__EXACT ? (float *)sdv__take(&g->allocator, sum, sizeof *g->ids) : NULL;
+        g->ids = sum <= SDV__EXACT ? (float *)lao__take(&g->allocator, sum, sizeof *g->ids) : NULL;
     }
     if (g->ids) {
         cancelled = sdv__run(work, g->size[2], sdv__fill_layer, &f) ||
                     sdv__run(work, g->size[1], sdv__column_slab, &f) ||
                     sdv__run(work, g->size[2], sdv__refine_layer, &f);
     }
-    sdv__give(&g->allocator, binned);
+    lao__give(&g->allocator, binned);
     if (cancelled) {
         return sdv__fail(host, SDV_LOG_CANCELLED, "building a grid");
     }
@@ -769,13 +769,13 @@ SDV_API lao_result sdv_grid_build(const sdv_host *host, const sdv_tree *tree,
         return sdv__fail(host, SDV_LOG_GRID_CELLS, "%u x %u x %u", g.size[0], g.size[1], g.size[2]);
     }
     g.allocator = sdv__allocator(host);
-    g.cells = (lao_v4 *)sdv__take(&g.allocator, g.cell_count, sizeof *g.cells);
-    g.layer = (uint32_t *)sdv__take(&g.allocator, g.cell_count, sizeof *g.layer);
-    g.occupied = (uint32_t *)sdv__take(
+    g.cells = (lao_v4 *)lao__take(&g.allocator, g.cell_count, sizeof *g.cells);
+    g.layer = (uint32_t *)lao__take(&g.allocator, g.cell_count, sizeof *g.layer);
+    g.occupied = (uint32_t *)lao__take(
         &g.allocator, (uint64_t)sdv__words(&g) * g.size[1] * g.size[2], sizeof *g.occupied);
     sdv__cones_take(tree, &g);
-    first = (uint32_t *)sdv__take(&g.allocator, SDV__AXIS + 1, sizeof *first);
-    layer_ids = (uint64_t *)sdv__take(&g.allocator, SDV__AXIS, sizeof *layer_ids);
+    first = (uint32_t *)lao__take(&g.allocator, SDV__AXIS + 1, sizeof *first);
+    layer_ids = (uint64_t *)lao__take(&g.allocator, SDV__AXIS, sizeof *layer_ids);
     if (g.cells && g.layer && g.occupied && g.cones && g.cone_nodes && first && layer_ids) {
         work.host = host;
         work.done = 0;
@@ -786,8 +786,8 @@ SDV_API lao_result sdv_grid_build(const sdv_host *host, const sdv_tree *tree,
         result = sdv__fail(host, SDV_LOG_MEMORY, "a grid of %u cells and %u cones", g.cell_count,
                            g.cone_count);
     }
-    sdv__give(&g.allocator, first);
-    sdv__give(&g.allocator, layer_ids);
+    lao__give(&g.allocator, first);
+    lao__give(&g.allocator, layer_ids);
     if (result != LAO_OK) {
         sdv_grid_free(&g);
         return result;
@@ -798,12 +798,12 @@ SDV_API lao_result sdv_grid_build(const sdv_host *host, const sdv_tree *tree,
 
 SDV_API void sdv_grid_free(sdv_grid *grid) {
     if (grid && grid->allocator.release) {
-        sdv__give(&grid->allocator, grid->cells);
-        sdv__give(&grid->allocator, grid->layer);
-        sdv__give(&grid->allocator, grid->occupied);
-        sdv__give(&grid->allocator, grid->ids);
-        sdv__give(&grid->allocator, grid->cones);
-        sdv__give(&grid->allocator, grid->cone_nodes);
+        lao__give(&grid->allocator, grid->cells);
+        lao__give(&grid->allocator, grid->layer);
+        lao__give(&grid->allocator, grid->occupied);
+        lao__give(&grid->allocator, grid->ids);
+        lao__give(&grid->allocator, grid->cones);
+        lao__give(&grid->allocator, grid->cone_nodes);
         memset(grid, 0, sizeof *grid);
     }
 }

@@ -361,9 +361,9 @@ static int sdv__changed_cones(const sdv_tree *tree, const uint32_t *nodes, uint3
                               sdv__change *c) {
     const sdv_grid *g = c->grid;
     const lao_allocator *a = &g->allocator;
-    unsigned char *moved = (unsigned char *)sdv__take(a, tree->node_count, 1);
+    unsigned char *moved = (unsigned char *)lao__take(a, tree->node_count, 1);
     uint32_t i, n = 0;
-    c->is_changed = (unsigned char *)sdv__take(a, g->cone_count, 1);
+    c->is_changed = (unsigned char *)lao__take(a, g->cone_count, 1);
     if (moved && c->is_changed) {
         memset(moved, 0, tree->node_count);
         for (i = 0; i < count; i++) {
@@ -374,8 +374,8 @@ static int sdv__changed_cones(const sdv_tree *tree, const uint32_t *nodes, uint3
             c->is_changed[i] = moved[ends[0]] || moved[ends[1]];
             c->changed_count += c->is_changed[i];
         }
-        c->changed = (uint32_t *)sdv__take(a, c->changed_count, sizeof *c->changed);
-        c->cones = (lao_v4 *)sdv__take(a, 2 * (uint64_t)c->changed_count, sizeof *c->cones);
+        c->changed = (uint32_t *)lao__take(a, c->changed_count, sizeof *c->changed);
+        c->cones = (lao_v4 *)lao__take(a, 2 * (uint64_t)c->changed_count, sizeof *c->cones);
     }
     for (i = 0; c->changed && c->cones && i < g->cone_count; i++) {
         if (c->is_changed[i]) {
@@ -383,7 +383,7 @@ static int sdv__changed_cones(const sdv_tree *tree, const uint32_t *nodes, uint3
             sdv__cone_set(tree, g->cone_nodes + 2 * (size_t)i, c->cones + 2 * (size_t)n++);
         }
     }
-    sdv__give(a, moved);
+    lao__give(a, moved);
     return c->changed && c->cones;
 }
 /* What marking has counted becomes where each layer begins. Returns the number of lists. */
@@ -409,12 +409,12 @@ static int sdv__change_memory(sdv__change *c, uint32_t lists) {
     const sdv_grid *g = c->grid;
     const lao_allocator *a = &g->allocator;
     uint64_t words = (uint64_t)sdv__words(g) * g->size[1] * g->size[2];
-    c->listed = (uint32_t *)sdv__take(a, 4 * (uint64_t)lists, sizeof *c->listed);
-    c->moves = (int32_t *)sdv__take(a, (uint64_t)lists + 1, sizeof *c->moves);
-    c->fresh = (float *)sdv__take(a, c->fresh_in[g->size[2]], sizeof *c->fresh);
+    c->listed = (uint32_t *)lao__take(a, 4 * (uint64_t)lists, sizeof *c->listed);
+    c->moves = (int32_t *)lao__take(a, (uint64_t)lists + 1, sizeof *c->moves);
+    c->fresh = (float *)lao__take(a, c->fresh_in[g->size[2]], sizeof *c->fresh);
     c->rows =
-        (uint32_t *)sdv__take(a, c->row_layers * (uint64_t)sdv__layer_size(g), sizeof *c->rows);
-    c->was = (uint32_t *)sdv__take(a, words, sizeof *c->was);
+        (uint32_t *)lao__take(a, c->row_layers * (uint64_t)sdv__layer_size(g), sizeof *c->rows);
+    c->was = (uint32_t *)lao__take(a, words, sizeof *c->was);
     if (!c->listed || !c->moves || !c->fresh || !c->rows || !c->was) {
         return 0;
     }
@@ -432,9 +432,9 @@ static lao_result sdv__change_prepare(sdv__work *work, sdv__change *c, uint64_t 
     for (k = 0; k < 3; k++) {
         c->blocks[k] = sdv__parts(g->size[k], SDV__BLOCK);
     }
-    c->stale = (unsigned char *)sdv__take(a, g->cell_count, 1);
+    c->stale = (unsigned char *)lao__take(a, g->cell_count, 1);
     c->close =
-        (unsigned char *)sdv__take(a, (uint64_t)c->blocks[0] * c->blocks[1] * c->blocks[2], 1);
+        (unsigned char *)lao__take(a, (uint64_t)c->blocks[0] * c->blocks[1] * c->blocks[2], 1);
     if (!c->stale || !c->close) {
         return sdv__fail(work->host, SDV_LOG_MEMORY, "changing a grid");
     }
@@ -455,7 +455,7 @@ static lao_result sdv__change_prepare(sdv__work *work, sdv__change *c, uint64_t 
     }
     if (*sum > g->id_room) { /* and some more, for the changes to come */
         c->room = (uint32_t)(*sum + *sum / 8);
-        c->ids = (float *)sdv__take(a, c->room, sizeof *c->ids);
+        c->ids = (float *)lao__take(a, c->room, sizeof *c->ids);
         if (!c->ids) {
             return sdv__fail(work->host, SDV_LOG_MEMORY, "changing a grid");
         }
@@ -513,17 +513,17 @@ static lao_result sdv__grid_change(const sdv_host *host, const sdv_tree *tree,
         grid->id_count = (uint32_t)sum;
         grid->rebuilt = 0;
     }
-    sdv__give(&grid->allocator, c.changed);
-    sdv__give(&grid->allocator, c.cones);
-    sdv__give(&grid->allocator, c.is_changed);
-    sdv__give(&grid->allocator, c.stale);
-    sdv__give(&grid->allocator, c.close);
-    sdv__give(&grid->allocator, c.listed);
-    sdv__give(&grid->allocator, c.moves);
-    sdv__give(&grid->allocator, c.fresh);
-    sdv__give(&grid->allocator, c.rows);
-    sdv__give(&grid->allocator, c.was);
-    sdv__give(&grid->allocator, c.ids);
+    lao__give(&grid->allocator, c.changed);
+    lao__give(&grid->allocator, c.cones);
+    lao__give(&grid->allocator, c.is_changed);
+    lao__give(&grid->allocator, c.stale);
+    lao__give(&grid->allocator, c.close);
+    lao__give(&grid->allocator, c.listed);
+    lao__give(&grid->allocator, c.moves);
+    lao__give(&grid->allocator, c.fresh);
+    lao__give(&grid->allocator, c.rows);
+    lao__give(&grid->allocator, c.was);
+    lao__give(&grid->allocator, c.ids);
     return result;
 }
 

@@ -2,14 +2,14 @@
  * layout: the reduced tree, its drawing in the plane, and that drawing as SVG or as a tree. Uses
    host. */
 
-static void sdv__reduced_parts(sdv_reduced *r, uint32_t tree_nodes, sdv__block *block) {
-    r->ids = sdv__part_u32(block, r->node_count);
-    r->nodes = sdv__part_u32(block, r->node_count);
-    r->parents = sdv__part_u32(block, r->node_count);
-    r->children = sdv__part_u32(block, 2 * (uint64_t)r->node_count);
-    r->order = sdv__part_u32(block, r->node_count);
-    r->roots = sdv__part_u32(block, r->root_count);
-    r->owners = sdv__part_u32(block, tree_nodes);
+static void sdv__reduced_parts(sdv_reduced *r, uint32_t tree_nodes, lao__block *block) {
+    r->ids = lao__part_u32(block, r->node_count);
+    r->nodes = lao__part_u32(block, r->node_count);
+    r->parents = lao__part_u32(block, r->node_count);
+    r->children = lao__part_u32(block, 2 * (uint64_t)r->node_count);
+    r->order = lao__part_u32(block, r->node_count);
+    r->roots = lao__part_u32(block, r->root_count);
+    r->owners = lao__part_u32(block, tree_nodes);
 }
 
 /* Children along the spanning tree. */
@@ -113,7 +113,7 @@ static void sdv__reduced_fill(const sdv_tree *t, const uint32_t *counts, uint32_
 
 SDV_API lao_result sdv_reduce(const sdv_host *host, const sdv_tree *tree, sdv_reduced *reduced) {
     lao_allocator a = sdv__allocator(host);
-    sdv__block block = {NULL, 0};
+    lao__block block = {NULL, 0};
     sdv_reduced r;
     uint32_t i, kept = 0, *scratch;
     uint64_t n;
@@ -121,7 +121,7 @@ SDV_API lao_result sdv_reduce(const sdv_host *host, const sdv_tree *tree, sdv_re
         return sdv__fail(host, SDV_LOG_NULL_ARGUMENT, "sdv_reduce");
     }
     n = tree->node_count;
-    scratch = (uint32_t *)sdv__take(&a, 3 * n, sizeof *scratch); /* counts, first, list */
+    scratch = (uint32_t *)lao__take(&a, 3 * n, sizeof *scratch); /* counts, first, list */
     if (!scratch) {
         return sdv__fail(host, SDV_LOG_MEMORY, "reducing a tree of %u nodes", tree->node_count);
     }
@@ -135,23 +135,23 @@ SDV_API lao_result sdv_reduce(const sdv_host *host, const sdv_tree *tree, sdv_re
     }
     r.node_count += kept;
     sdv__reduced_parts(&r, tree->node_count, &block);
-    r.memory = sdv__take(&a, block.used, 1);
+    r.memory = lao__take(&a, block.used, 1);
     if (!r.memory) {
-        sdv__give(&a, scratch);
+        lao__give(&a, scratch);
         return sdv__fail(host, SDV_LOG_MEMORY, "a reduced tree of %u nodes", r.node_count);
     }
     block.base = (unsigned char *)r.memory;
     block.used = 0;
     sdv__reduced_parts(&r, tree->node_count, &block);
     sdv__reduced_fill(tree, scratch, kept, scratch + n, scratch + 2 * n, &r);
-    sdv__give(&a, scratch);
+    lao__give(&a, scratch);
     *reduced = r;
     return LAO_OK;
 }
 
 SDV_API void sdv_reduced_free(sdv_reduced *reduced) {
     if (reduced && reduced->memory) {
-        sdv__give(&reduced->allocator, reduced->memory);
+        lao__give(&reduced->allocator, reduced->memory);
         memset(reduced, 0, sizeof *reduced);
     }
 }
@@ -249,10 +249,10 @@ static void sdv__layout_children(sdv__layout_work *w, uint32_t n) {
     w->h[c2] = 0.5 * (w->low[c2] + w->high[c2]);
 }
 
-static void sdv__layout_parts(sdv_layout *l, sdv__block *block) {
-    l->h = (float *)sdv__part(block, l->node_count, sizeof(float));
-    l->s = (float *)sdv__part(block, l->node_count, sizeof(float));
-    l->weights = (float *)sdv__part(block, l->node_count, sizeof(float));
+static void sdv__layout_parts(sdv_layout *l, lao__block *block) {
+    l->h = (float *)lao__part(block, l->node_count, sizeof(float));
+    l->s = (float *)lao__part(block, l->node_count, sizeof(float));
+    l->weights = (float *)lao__part(block, l->node_count, sizeof(float));
 }
 
 static void sdv__layout_finish(const sdv__layout_work *w, sdv_layout *l) {
@@ -275,7 +275,7 @@ SDV_API lao_result sdv_layout_make(const sdv_host *host, const sdv_tree *tree,
                                    sdv_layout *layout) {
     const sdv_layout_desc standard = {NULL, 0, 0, 0};
     sdv__layout_work w;
-    sdv__block block = {NULL, 0};
+    lao__block block = {NULL, 0};
     sdv_layout l;
     double *scratch;
     uint32_t i;
@@ -289,11 +289,11 @@ SDV_API lao_result sdv_layout_make(const sdv_host *host, const sdv_tree *tree,
     memset(&l, 0, sizeof l);
     l.node_count = reduced->node_count;
     l.allocator = sdv__allocator(host);
-    scratch = (double *)sdv__take(&l.allocator, 5 * (uint64_t)l.node_count, sizeof *scratch);
+    scratch = (double *)lao__take(&l.allocator, 5 * (uint64_t)l.node_count, sizeof *scratch);
     sdv__layout_parts(&l, &block);
-    l.memory = scratch ? sdv__take(&l.allocator, block.used, 1) : NULL;
+    l.memory = scratch ? lao__take(&l.allocator, block.used, 1) : NULL;
     if (!l.memory) {
-        sdv__give(&l.allocator, scratch);
+        lao__give(&l.allocator, scratch);
         return sdv__fail(host, SDV_LOG_MEMORY, "a layout of %u nodes", l.node_count);
     }
     block.base = (unsigned char *)l.memory;
@@ -314,14 +314,14 @@ SDV_API lao_result sdv_layout_make(const sdv_host *host, const sdv_tree *tree,
         }
     }
     sdv__layout_finish(&w, &l);
-    sdv__give(&l.allocator, scratch);
+    lao__give(&l.allocator, scratch);
     *layout = l;
     return LAO_OK;
 }
 
 SDV_API void sdv_layout_free(sdv_layout *layout) {
     if (layout && layout->memory) {
-        sdv__give(&layout->allocator, layout->memory);
+        lao__give(&layout->allocator, layout->memory);
         memset(layout, 0, sizeof *layout);
     }
 }
@@ -529,9 +529,9 @@ SDV_API lao_result sdv_layout_tree(const sdv_host *host, const sdv_tree *tree,
     for (k = 0; k < reduced->node_count; k++) {
         d.node_count += reduced->ids[k] >= tree->node_count;
     }
-    d.positions = (float *)sdv__take(&a, 3 * (uint64_t)d.node_count, sizeof *d.positions);
-    d.radii = (float *)sdv__take(&a, d.node_count, sizeof *d.radii);
-    d.segments = (sdv_segment *)sdv__take(&a, d.node_count, sizeof *d.segments);
+    d.positions = (float *)lao__take(&a, 3 * (uint64_t)d.node_count, sizeof *d.positions);
+    d.radii = (float *)lao__take(&a, d.node_count, sizeof *d.radii);
+    d.segments = (sdv_segment *)lao__take(&a, d.node_count, sizeof *d.segments);
     if (d.positions && d.radii && d.segments) {
         sdv__drawing_page(&d, desc);
         for (k = 0; k < reduced->node_count; k++) {
@@ -544,8 +544,8 @@ SDV_API lao_result sdv_layout_tree(const sdv_host *host, const sdv_tree *tree,
         out.segments = d.segments;
         result = sdv_tree_build(&silent, &out, drawing);
     }
-    sdv__give(&a, d.positions);
-    sdv__give(&a, d.radii);
-    sdv__give(&a, d.segments);
+    lao__give(&a, d.positions);
+    lao__give(&a, d.radii);
+    lao__give(&a, d.segments);
     return result == LAO_OK ? LAO_OK : sdv__fail(host, SDV_LOG_MEMORY, "drawing a layout");
 }

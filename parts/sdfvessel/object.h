@@ -60,7 +60,7 @@ static int sdv__object_colors(sdv_object *object, const uint8_t *colors, uint32_
     static const uint8_t coral[4] = {226, 106, 92, 255};
     size_t i, size = 8 * (size_t)cone_count;
     if (!colors) {
-        uint8_t *own = (uint8_t *)sdv__take(&object->allocator, size, 1);
+        uint8_t *own = (uint8_t *)lao__take(&object->allocator, size, 1);
         if (!own) {
             return 0;
         }
@@ -348,22 +348,22 @@ static lao_result sdv__object_nearest(const sdv_host *host, sdv_object *object) 
     }
     for (; leaves * SDV_LEAF_CONES < count; leaves *= 2) {
     }
-    texels = (lao_v4 *)sdv__take(a, first + 3 * (uint64_t)leaves, sizeof *texels);
-    keys = (uint32_t *)sdv__take(a, 3 * (uint64_t)count, sizeof *keys); /* and order, other */
+    texels = (lao_v4 *)lao__take(a, first + 3 * (uint64_t)leaves, sizeof *texels);
+    keys = (uint32_t *)lao__take(a, 3 * (uint64_t)count, sizeof *keys); /* and order, other */
     if (texels && keys) {
         object->shapes[0].z = (float)first;
         object->shapes[0].w = (float)leaves;
         memcpy(texels, object->shapes, first * sizeof *texels);
         sdv__nearest_order(cones, count, keys);
         sdv__nearest_fill(cones, count, keys + count, leaves, texels + first);
-        sdv__give(a, object->nearest);
+        lao__give(a, object->nearest);
         object->nearest = texels;
         sdv__object_buffer(object, "vessel_shapes", texels, first + 3 * leaves);
-        sdv__give(a, keys);
+        lao__give(a, keys);
         return LAO_OK;
     }
-    sdv__give(a, texels);
-    sdv__give(a, keys);
+    lao__give(a, texels);
+    lao__give(a, keys);
     return sdv__fail(host, SDV_LOG_MEMORY, "the nearest of %u vessels", count);
 }
 
@@ -535,14 +535,14 @@ SDV_API lao_result sdv_object_mesh(const sdv_host *host, const sdv_mesh_desc *de
     }
     size = (3 * (size_t)desc->vertex_count + desc->triangle_count) * sizeof *memory +
            4 * (size_t)desc->vertex_count;
-    memory = (lao_v4 *)sdv__take(&allocator, size, 1);
+    memory = (lao_v4 *)lao__take(&allocator, size, 1);
     if (!memory) {
         return sdv__fail(host, SDV_LOG_MEMORY, "a mesh of %u vertices", desc->vertex_count);
     }
     if (!sdv__mesh_fill(desc, memory, memory + 3 * (size_t)desc->vertex_count,
                         (uint8_t *)(memory + 3 * (size_t)desc->vertex_count + desc->triangle_count),
                         bounds)) {
-        sdv__give(&allocator, memory);
+        lao__give(&allocator, memory);
         return sdv__fail(host, SDV_LOG_MESH, NULL);
     }
     sdv_object_drawn(host, bounds[0], object);
@@ -579,11 +579,11 @@ SDV_API lao_result sdv_object_pattern(const sdv_host *host, const float *values,
     if (size < 1 || size > SDV_MOST_PATTERN) {
         return sdv__fail(host, SDV_LOG_IMAGE_SIZE, "a pattern of %u x %u", size, size);
     }
-    greys = (sdv__grey *)sdv__take(&a, count, sizeof *greys);
-    pattern = (float *)sdv__take(&a, count + 1, sizeof *pattern);
+    greys = (sdv__grey *)lao__take(&a, count, sizeof *greys);
+    pattern = (float *)lao__take(&a, count + 1, sizeof *pattern);
     if (!greys || !pattern) {
-        sdv__give(&a, greys);
-        sdv__give(&a, pattern);
+        lao__give(&a, greys);
+        lao__give(&a, pattern);
         return sdv__fail(host, SDV_LOG_MEMORY, "a pattern of %u x %u", size, size);
     }
     for (i = 0; i < count; i++) {
@@ -595,7 +595,7 @@ SDV_API lao_result sdv_object_pattern(const sdv_host *host, const float *values,
     for (i = 0; i < count; i++) {
         pattern[1 + greys[i].place] = ((float)i + 0.5f) / (float)count;
     }
-    sdv__give(&a, greys);
+    lao__give(&a, greys);
     object->pattern = pattern;
     sdv__object_buffer(object, "vessel_pattern", pattern, count + 1);
     return LAO_OK;
@@ -603,9 +603,9 @@ SDV_API lao_result sdv_object_pattern(const sdv_host *host, const float *values,
 
 SDV_API void sdv_object_free(sdv_object *object) {
     if (object && object->allocator.release) {
-        sdv__give(&object->allocator, object->pattern);
-        sdv__give(&object->allocator, object->nearest);
-        sdv__give(&object->allocator, object->memory);
+        lao__give(&object->allocator, object->pattern);
+        lao__give(&object->allocator, object->nearest);
+        lao__give(&object->allocator, object->memory);
         sdv_grid_free(&object->grid);
         memset(object, 0, sizeof *object);
     }

@@ -154,7 +154,7 @@ SDV_API lao_result sdv_pull_push(const sdv_host *host, const sdv_pull_push_desc 
         levels[count].height = (levels[count - 1].height + 1) / 2;
         texels += (uint64_t)levels[count].width * levels[count].height;
     }
-    memory = (float *)sdv__take(&a, texels * (desc->channels + 1), sizeof *memory);
+    memory = (float *)lao__take(&a, texels * (desc->channels + 1), sizeof *memory);
     if (!memory) {
         return sdv__fail(host, SDV_LOG_MEMORY, "the pyramid of a %u x %u image", desc->width,
                          desc->height);
@@ -173,6 +173,6 @@ SDV_API lao_result sdv_pull_push(const sdv_host *host, const sdv_pull_push_desc 
     if (empty && !cancelled) {
         *empty = !(levels[count - 1].weights[0] > 0.0f);
     }
-    sdv__give(&a, memory);
+    lao__give(&a, memory);
     return cancelled ? sdv__fail(host, SDV_LOG_CANCELLED, "filling an image") : LAO_OK;
 }

@@ -154,7 +154,7 @@ SDV_API lao_result sdv_target_create(const sdv_host *host, const sdv_target_desc
     if (result != LAO_OK) {
         return result;
     }
-    t = (sdv_target *)sdv__take(&a, 1, sizeof *t);
+    t = (sdv_target *)lao__take(&a, 1, sizeof *t);
     if (!t) {
         return sdv__fail(host, SDV_LOG_MEMORY, "a target");
     }
@@ -165,9 +165,9 @@ SDV_API lao_result sdv_target_create(const sdv_host *host, const sdv_target_desc
     t->piece_count = t->piece_count ? t->piece_count : 1; /* a point */
     for (t->leaf_count = 1; t->leaf_count * SDV__PIECES < t->piece_count; t->leaf_count *= 2) {
     }
-    t->pieces = (sdv__piece *)sdv__take(&a, t->piece_count, sizeof *t->pieces);
-    t->balls = (lao_v4 *)sdv__take(&a, 2 * (uint64_t)t->leaf_count, sizeof *t->balls);
-    keys = (uint32_t *)sdv__take(&a, 3 * (uint64_t)t->piece_count, sizeof *keys);
+    t->pieces = (sdv__piece *)lao__take(&a, t->piece_count, sizeof *t->pieces);
+    t->balls = (lao_v4 *)lao__take(&a, 2 * (uint64_t)t->leaf_count, sizeof *t->balls);
+    keys = (uint32_t *)lao__take(&a, 3 * (uint64_t)t->piece_count, sizeof *keys);
     if (t->pieces && t->balls && keys) {
         sdv__target_fill(t, desc, keys);
         *target = t;
@@ -175,16 +175,16 @@ SDV_API lao_result sdv_target_create(const sdv_host *host, const sdv_target_desc
         result = sdv__fail(host, SDV_LOG_MEMORY, "a target of %u pieces", t->piece_count);
         sdv_target_free(t);
     }
-    sdv__give(&a, keys);
+    lao__give(&a, keys);
     return result;
 }
 
 SDV_API void sdv_target_free(sdv_target *target) {
     if (target) {
         lao_allocator a = target->allocator;
-        sdv__give(&a, target->pieces);
-        sdv__give(&a, target->balls);
-        sdv__give(&a, target);
+        lao__give(&a, target->pieces);
+        lao__give(&a, target->balls);
+        lao__give(&a, target);
     }
 }
 
@@ -265,7 +265,7 @@ SDV_API lao_result sdv_target_distances(const sdv_host *host, const sdv_target *
     m.target = target;
     m.tree = tree;
     m.segments =
-        segments ? segments : (float *)sdv__take(&a, tree->segment_count, sizeof *m.segments);
+        segments ? segments : (float *)lao__take(&a, tree->segment_count, sizeof *m.segments);
     if (!m.segments) {
         return sdv__fail(host, SDV_LOG_MEMORY, "%u distances", tree->segment_count);
     }
@@ -284,7 +284,7 @@ SDV_API lao_result sdv_target_distances(const sdv_host *host, const sdv_target *
         }
     }
     if (!segments) {
-        sdv__give(&a, m.segments);
+        lao__give(&a, m.segments);
     }
     return cancelled ? sdv__fail(host, SDV_LOG_CANCELLED, "measuring distances") : LAO_OK;
 }

@@ -78,26 +78,26 @@ static lao_result sdv__tree_check(const sdv_host *host, const sdv_tree_desc *des
     return LAO_OK;
 }
 
-static void sdv__build_parts(sdv__build *b, sdv__block *block) {
+static void sdv__build_parts(sdv__build *b, lao__block *block) {
     uint64_t n = b->desc->node_count, m = b->desc->segment_count, all = n + m, size = 16;
     while (size < 2 * (n > m ? n : m)) {
         size *= 2;
     }
     b->table_mask = (uint32_t)(size - 1);
-    b->target = sdv__part_u32(block, n);
-    b->source = sdv__part_u32(block, n);
-    b->group = sdv__part_u32(block, n);
-    b->degree = sdv__part_u32(block, n);
-    b->segments = (sdv_segment *)sdv__part(block, all, sizeof(sdv_segment));
-    b->segment_source = sdv__part_u32(block, all);
-    b->table = sdv__part_u32(block, size);
-    b->first = sdv__part_u32(block, n + 1);
-    b->incident = sdv__part_u32(block, 2 * all);
-    b->later = sdv__part_u32(block, 2 * all);
-    b->turned = (unsigned char *)sdv__part(block, all, 1);
-    b->entered = sdv__part_u32(block, n);
-    b->next = sdv__part_u32(block, n);
-    b->radius = (float *)sdv__part(block, n, sizeof(float));
+    b->target = lao__part_u32(block, n);
+    b->source = lao__part_u32(block, n);
+    b->group = lao__part_u32(block, n);
+    b->degree = lao__part_u32(block, n);
+    b->segments = (sdv_segment *)lao__part(block, all, sizeof(sdv_segment));
+    b->segment_source = lao__part_u32(block, all);
+    b->table = lao__part_u32(block, size);
+    b->first = lao__part_u32(block, n + 1);
+    b->incident = lao__part_u32(block, 2 * all);
+    b->later = lao__part_u32(block, 2 * all);
+    b->turned = (unsigned char *)lao__part(block, all, 1);
+    b->entered = lao__part_u32(block, n);
+    b->next = lao__part_u32(block, n);
+    b->radius = (float *)lao__part(block, n, sizeof(float));
 }
 
 static uint32_t sdv__mix(uint32_t a, uint32_t b, uint32_t c) {
@@ -354,33 +354,33 @@ static void sdv__build_incidence(sdv__build *b) {
     b->first[0] = 0;
 }
 
-static void sdv__tree_parts(const sdv__build *b, sdv_tree *t, sdv__block *block) {
+static void sdv__tree_parts(const sdv__build *b, sdv_tree *t, lao__block *block) {
     const sdv_tree_desc *desc = b->desc;
     uint64_t n = t->node_count, m = t->segment_count;
     uint32_t i;
-    t->nodes = (lao_v4 *)sdv__part(block, n, sizeof(lao_v4));
-    t->segments = (sdv_segment *)sdv__part(block, m, sizeof(sdv_segment));
-    t->roots = sdv__part_u32(block, t->root_count);
-    t->parents = sdv__part_u32(block, n);
-    t->parent_segments = sdv__part_u32(block, n);
-    t->components = sdv__part_u32(block, n);
-    t->order = sdv__part_u32(block, n);
-    t->child_counts = sdv__part_u32(block, n);
-    t->node_sources = sdv__part_u32(block, n);
-    t->segment_sources = sdv__part_u32(block, m);
-    t->node_targets = sdv__part_u32(block, t->source_count);
+    t->nodes = (lao_v4 *)lao__part(block, n, sizeof(lao_v4));
+    t->segments = (sdv_segment *)lao__part(block, m, sizeof(sdv_segment));
+    t->roots = lao__part_u32(block, t->root_count);
+    t->parents = lao__part_u32(block, n);
+    t->parent_segments = lao__part_u32(block, n);
+    t->components = lao__part_u32(block, n);
+    t->order = lao__part_u32(block, n);
+    t->child_counts = lao__part_u32(block, n);
+    t->node_sources = lao__part_u32(block, n);
+    t->segment_sources = lao__part_u32(block, m);
+    t->node_targets = lao__part_u32(block, t->source_count);
     t->node_attributes =
-        (sdv_attribute *)sdv__part(block, t->node_attribute_count, sizeof(sdv_attribute));
+        (sdv_attribute *)lao__part(block, t->node_attribute_count, sizeof(sdv_attribute));
     t->segment_attributes =
-        (sdv_attribute *)sdv__part(block, t->segment_attribute_count, sizeof(sdv_attribute));
+        (sdv_attribute *)lao__part(block, t->segment_attribute_count, sizeof(sdv_attribute));
     for (i = 0; i < t->node_attribute_count + t->segment_attribute_count; i++) {
         int of_node = i < t->node_attribute_count;
         uint32_t k = of_node ? i : i - t->node_attribute_count;
         const sdv_attribute *from =
             (of_node ? desc->node_attributes : desc->segment_attributes) + k;
         uint32_t components = from->components ? from->components : 1;
-        char *name = (char *)sdv__part(block, strlen(from->name) + 1, 1);
-        float *values = (float *)sdv__part(block, (of_node ? n : m) * components, sizeof(float));
+        char *name = (char *)lao__part(block, strlen(from->name) + 1, 1);
+        float *values = (float *)lao__part(block, (of_node ? n : m) * components, sizeof(float));
         if (block->base) {
             sdv_attribute *to = (of_node ? t->node_attributes : t->segment_attributes) + k;
             memcpy(name, from->name, strlen(from->name) + 1);
@@ -610,7 +610,7 @@ static void sdv__tree_warnings(sdv__build *b, sdv_tree *t) {
 /* The tree from what was picked. */
 static lao_result sdv__tree_finish(sdv__build *b, sdv_tree *out) {
     sdv_tree t;
-    sdv__block block = {NULL, 0};
+    lao__block block = {NULL, 0};
     uint32_t i;
     memset(&t, 0, sizeof t);
     t.node_count = b->node_count;
@@ -622,7 +622,7 @@ static lao_result sdv__tree_finish(sdv__build *b, sdv_tree *out) {
         t.root_count += b->group[i] == i;
     }
     sdv__tree_parts(b, &t, &block);
-    t.memory = sdv__take(&b->allocator, block.used, 1);
+    t.memory = lao__take(&b->allocator, block.used, 1);
     if (!t.memory) {
         return sdv__fail(b->host, SDV_LOG_MEMORY, "the tree");
     }
@@ -644,7 +644,7 @@ static lao_result sdv__tree_finish(sdv__build *b, sdv_tree *out) {
 
 SDV_API lao_result sdv_tree_build(const sdv_host *host, const sdv_tree_desc *desc, sdv_tree *tree) {
     sdv__build b;
-    sdv__block block = {NULL, 0};
+    lao__block block = {NULL, 0};
     lao_result result;
     if (!desc || !tree) {
         return sdv__fail(host, SDV_LOG_NULL_ARGUMENT, "sdv_tree_build");
@@ -658,7 +658,7 @@ SDV_API lao_result sdv_tree_build(const sdv_host *host, const sdv_tree_desc *des
     b.desc = desc;
     b.allocator = sdv__allocator(host);
     sdv__build_parts(&b, &block);
-    block.base = (unsigned char *)sdv__take(&b.allocator, block.used, 1);
+    block.base = (unsigned char *)lao__take(&b.allocator, block.used, 1);
     if (!block.base) {
         return sdv__fail(host, SDV_LOG_MEMORY, "building a tree of %u nodes", desc->node_count);
     }
@@ -673,13 +673,13 @@ SDV_API lao_result sdv_tree_build(const sdv_host *host, const sdv_tree_desc *des
         sdv__join(&b);
     }
     result = sdv__tree_finish(&b, tree);
-    sdv__give(&b.allocator, block.base);
+    lao__give(&b.allocator, block.base);
     return result;
 }
 
 SDV_API void sdv_tree_free(sdv_tree *tree) {
     if (tree && tree->memory) {
-        sdv__give(&tree->allocator, tree->memory);
+        lao__give(&tree->allocator, tree->memory);
         memset(tree, 0, sizeof *tree);
     }
 }

@@ -200,21 +200,21 @@ typedef struct vsf__coarse {
 } vsf__coarse;
 
 static void vsf__coarse_parts(vsf__coarse *c, const vsf__lattice *l, uint32_t left,
-                              vsf__block *block) {
+                              lao__block *block) {
     const vsf_mesh *mesh = l->mesh;
     uint32_t i;
-    c->positions = vsf__part_float(block, 3 * (uint64_t)l->count);
-    c->triangles = vsf__part_u32(block, 3 * (uint64_t)left);
-    c->sources = vsf__part_u32(block, left);
-    c->firsts = vsf__part_u32(block, l->count);
+    c->positions = lao__part_float(block, 3 * (uint64_t)l->count);
+    c->triangles = lao__part_u32(block, 3 * (uint64_t)left);
+    c->sources = lao__part_u32(block, left);
+    c->firsts = lao__part_u32(block, l->count);
     for (c->mask = 1; c->mask < 2 * (uint64_t)left; c->mask *= 2) {
     }
-    c->table = vsf__part_u32(block, c->mask--);
-    c->sums = (double *)vsf__part(block, mesh->attribute_count ? 2 * (uint64_t)l->count : 0,
+    c->table = lao__part_u32(block, c->mask--);
+    c->sums = (double *)lao__part(block, mesh->attribute_count ? 2 * (uint64_t)l->count : 0,
                                   sizeof(double));
-    c->attributes = (vsf_attribute *)vsf__part(block, mesh->attribute_count, sizeof(vsf_attribute));
+    c->attributes = (vsf_attribute *)lao__part(block, mesh->attribute_count, sizeof(vsf_attribute));
     for (i = 0; i < mesh->attribute_count; i++) {
-        float *values = vsf__part_float(block, (uint64_t)l->count * mesh->attributes[i].components);
+        float *values = lao__part_float(block, (uint64_t)l->count * mesh->attributes[i].components);
         if (block->base) {
             c->attributes[i] = mesh->attributes[i];
             c->attributes[i].values = values;
@@ -307,29 +307,29 @@ static lao_result vsf__coarse_build(const vsf_host *host, vsf__lattice *l, vsf__
 static lao_result vsf__decimate_cells(const vsf_host *host, vsf__lattice *l, uint32_t left,
                                       vsf_mesh *coarser) {
     lao_allocator allocator = vsf__allocator(host);
-    vsf__block block = {NULL, 0};
+    lao__block block = {NULL, 0};
     vsf__coarse c;
     lao_result result = LAO_ERROR_OUT_OF_MEMORY;
     void *memory;
     memset(&c, 0, sizeof c);
     vsf__coarse_parts(&c, l, left, &block);
-    memory = vsf__take(&allocator, block.used, 1);
-    l->parts = (vsf__cell *)vsf__take(&allocator, l->count, sizeof *l->parts);
+    memory = lao__take(&allocator, block.used, 1);
+    l->parts = (vsf__cell *)lao__take(&allocator, l->count, sizeof *l->parts);
     if (memory && l->parts) {
         block.base = (unsigned char *)memory;
         block.used = 0;
         vsf__coarse_parts(&c, l, left, &block);
         result = vsf__coarse_build(host, l, &c, left, coarser);
     }
-    vsf__give(&allocator, memory);
-    vsf__give(&allocator, l->parts);
+    lao__give(&allocator, memory);
+    lao__give(&allocator, l->parts);
     return result;
 }
 
-static void vsf__lattice_parts(vsf__lattice *l, vsf__block *block) {
-    l->keys = (uint64_t *)vsf__part(block, l->mesh->vertex_count, sizeof *l->keys);
-    l->cells = vsf__part_u32(block, l->mesh->vertex_count);
-    l->table = vsf__part_u32(block, (uint64_t)l->mask + 1);
+static void vsf__lattice_parts(vsf__lattice *l, lao__block *block) {
+    l->keys = (uint64_t *)lao__part(block, l->mesh->vertex_count, sizeof *l->keys);
+    l->cells = lao__part_u32(block, l->mesh->vertex_count);
+    l->table = lao__part_u32(block, (uint64_t)l->mask + 1);
 }
 
 /* Without words: the caller says what failed. */
@@ -337,7 +337,7 @@ static lao_result vsf__decimate(const vsf_host *host, const vsf_mesh *mesh, uint
                                 vsf_mesh *coarser) {
     lao_allocator allocator = vsf__allocator(host);
     vsf__progress progress = vsf__progress_make(host, 20);
-    vsf__block block = {NULL, 0};
+    lao__block block = {NULL, 0};
     vsf__lattice l;
     lao_result result = LAO_ERROR_OUT_OF_MEMORY;
     void *memory;
@@ -353,7 +353,7 @@ static lao_result vsf__decimate(const vsf_host *host, const vsf_mesh *mesh, uint
     }
     l.mask--;
     vsf__lattice_parts(&l, &block);
-    memory = vsf__take(&allocator, block.used, 1);
+    memory = lao__take(&allocator, block.used, 1);
     if (memory) {
         block.base = (unsigned char *)memory;
         block.used = 0;
@@ -361,7 +361,7 @@ static lao_result vsf__decimate(const vsf_host *host, const vsf_mesh *mesh, uint
         result = vsf__cells_fit(&progress, &l, most)
                      ? LAO_ERROR_NOT_READY
                      : vsf__decimate_cells(host, &l, vsf__cells_left(&l), coarser);
-        vsf__give(&allocator, memory);
+        lao__give(&allocator, memory);
     }
     return result;
 }

@@ -181,7 +181,7 @@ static void vsf__feature_all(vsf__features *f) {
 
 static lao_result vsf__features_out(const vsf_host *host, vsf__features *f, vsf_polylines *lines) {
     vsf_polylines out;
-    vsf__block block = {NULL, 0};
+    lao__block block = {NULL, 0};
     int round;
     memset(&out, 0, sizeof out);
     out.allocator = vsf__allocator(host);
@@ -189,12 +189,12 @@ static lao_result vsf__features_out(const vsf_host *host, vsf__features *f, vsf_
     out.line_count = f->line_count;
     out.point_count = f->point_count;
     for (round = 0; round < 2; round++) {
-        out.offsets = vsf__part_u32(&block, (uint64_t)f->line_count + 1);
+        out.offsets = lao__part_u32(&block, (uint64_t)f->line_count + 1);
         /* room for the single points that are taken back */
-        out.points = vsf__part_float(&block, 3 * ((uint64_t)f->point_count + 2));
-        out.values = vsf__part_float(&block, (uint64_t)f->point_count + 2);
+        out.points = lao__part_float(&block, 3 * ((uint64_t)f->point_count + 2));
+        out.values = lao__part_float(&block, (uint64_t)f->point_count + 2);
         if (round == 0) {
-            out.memory = vsf__take(&out.allocator, block.used, 1);
+            out.memory = lao__take(&out.allocator, block.used, 1);
             if (!out.memory) {
                 return vsf__fail(host, VSF_LOG_MEMORY, "%u points of lines", f->point_count);
             }
@@ -232,11 +232,11 @@ VSF_API lao_result vsf_feature_lines(const vsf_host *host, const vsf_mesh *mesh,
     }
     memset(&f, 0, sizeof f);
     n = mesh->vertex_count;
-    values = (float *)vsf__take(&allocator, 3 * (uint64_t)n, sizeof(float));
-    f.seen = (unsigned char *)vsf__take(&allocator, mesh->triangle_count, 1);
+    values = (float *)lao__take(&allocator, 3 * (uint64_t)n, sizeof(float));
+    f.seen = (unsigned char *)lao__take(&allocator, mesh->triangle_count, 1);
     if (!values || !f.seen) {
-        vsf__give(&allocator, values);
-        vsf__give(&allocator, f.seen);
+        lao__give(&allocator, values);
+        lao__give(&allocator, f.seen);
         return vsf__fail(host, VSF_LOG_MEMORY, "feature lines");
     }
     f.mesh = mesh;
@@ -263,14 +263,14 @@ VSF_API lao_result vsf_feature_lines(const vsf_host *host, const vsf_mesh *mesh,
     }
     result = result == LAO_OK ? vsf__features_out(host, &f, lines)
                               : vsf__fail(host, VSF_LOG_CANCELLED, NULL);
-    vsf__give(&allocator, values);
-    vsf__give(&allocator, f.seen);
+    lao__give(&allocator, values);
+    lao__give(&allocator, f.seen);
     return result;
 }
 
 VSF_API void vsf_polylines_free(vsf_polylines *lines) {
     if (lines && lines->memory) {
-        vsf__give(&lines->allocator, lines->memory);
+        lao__give(&lines->allocator, lines->memory);
     }
     if (lines) {
         memset(lines, 0, sizeof *lines);

@@ -1,14 +1,13 @@
 /* ================================================================================================
- * host: failures, memory and jobs, as the host wants them. The implementation begins here and ends
-   with the last section; all of it uses the interface and the shared text. */
+ * host: failures and jobs, as the host wants them; memory comes from lineao.h (its section host).
+   The implementation begins here and ends with the last section; all of it uses the interface, the
+   shared text and lineao.h's host. */
 #ifdef VESSELSURFACE_IMPLEMENTATION
 #ifndef VESSELSURFACE_IMPLEMENTATION_DONE
 #define VESSELSURFACE_IMPLEMENTATION_DONE
 
-#include <stdarg.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
+#define LAO__HOST
+#include "lineao.h"
 
 #ifdef __cplusplus
 extern "C" {
@@ -28,83 +27,18 @@ static const vsf__item_row vsf__items[] = {
 /* Logs a failure with a place (printf) or NULL; returns its result. */
 static lao_result vsf__fail(const vsf_host *host, vsf_log_item item, const char *place, ...) {
     char text[320];
-    size_t n;
-    if (!host || !host->log) {
-        return vsf__items[item].result;
+    va_list arguments;
+    if (host && host->log) {
+        va_start(arguments, place);
+        lao__failure_text(text, sizeof text, vsf__items[item].text, place, arguments);
+        va_end(arguments);
+        host->log(host->user, item, vsf__items[item].result, text);
     }
-    n = (size_t)snprintf(text, sizeof text, "%s", vsf__items[item].text);
-    if (place && n + 2 < sizeof text) {
-        va_list list;
-        memcpy(text + n, ": ", 3);
-        va_start(list, place);
-        vsnprintf(text + n + 2, sizeof text - n - 2, place, list);
-        va_end(list);
-    }
-    host->log(host->user, item, vsf__items[item].result, text);
     return vsf__items[item].result;
 }
 
-static void *vsf__malloc(void *user, size_t size) {
-    (void)user;
-    return malloc(size);
-}
-static void vsf__free(void *user, void *memory, size_t size) {
-    (void)user;
-    (void)size;
-    free(memory);
-}
 static lao_allocator vsf__allocator(const vsf_host *host) {
-    lao_allocator a;
-    if (host && host->allocator.allocate && host->allocator.release) {
-        return host->allocator;
-    }
-    a.allocate = vsf__malloc;
-    a.release = vsf__free;
-    a.user = NULL;
-    return a;
-}
-
-/* Memory that knows its size, in front of it. NULL: none left, or more than size_t can count. */
-enum { VSF__HEAD = 16 };
-static void *vsf__take(const lao_allocator *allocator, uint64_t count, size_t size) {
-    unsigned char *memory;
-    size_t bytes;
-    if (count > (SIZE_MAX / 2 - VSF__HEAD) / size) {
-        return NULL;
-    }
-    bytes = VSF__HEAD + (size_t)count * size;
-    memory = (unsigned char *)allocator->allocate(allocator->user, bytes);
-    if (!memory) {
-        return NULL;
-    }
-    memcpy(memory, &bytes, sizeof bytes);
-    return memory + VSF__HEAD;
-}
-static void vsf__give(const lao_allocator *allocator, void *taken) {
-    if (taken) {
-        unsigned char *memory = (unsigned char *)taken - VSF__HEAD;
-        size_t bytes;
-        memcpy(&bytes, memory, sizeof bytes);
-        allocator->release(allocator->user, memory, bytes);
-    }
-}
-
-/* Cuts one block into arrays: a first round with base NULL counts, a second one with the memory
-   cuts. Counts stay below 2^34, so that sums of a few dozen parts do not overflow. */
-typedef struct vsf__block {
-    unsigned char *base;
-    uint64_t used;
-} vsf__block;
-static void *vsf__part(vsf__block *block, uint64_t count, size_t size) {
-    unsigned char *part = block->base ? block->base + block->used : NULL;
-    block->used += (count * size + 15u) & ~(uint64_t)15u;
-    return part;
-}
-static uint32_t *vsf__part_u32(vsf__block *block, uint64_t count) {
-    return (uint32_t *)vsf__part(block, count, sizeof(uint32_t));
-}
-static float *vsf__part_float(vsf__block *block, uint64_t count) {
-    return (float *)vsf__part(block, count, sizeof(float));
+    return lao__allocator_or_default(host ? &host->allocator : NULL);
 }
 
 /* Work in fixed chunks through the host's job. `done` of `total` is what progress hears. */
@@ -126,9 +60,9 @@ static void vsf__work_chunk(void *arg, uint32_t index) {
 /* Returns 0, or -1 when the host cancels. Every item counts one unit of progress. */
 static int vsf__run(vsf__progress *progress, uint32_t items, uint32_t chunk, void *arg,
                     void (*fn)(void *arg, uint32_t first, uint32_t end)) {
-    const vsf_host *host = progress->host;
+    const lao_job *job = progress->host ? &progress->host->job : NULL;
     const uint32_t batch = 64;
-    uint32_t chunks = items / chunk + (items % chunk != 0), i;
+    uint32_t chunks = items / chunk + (items % chunk != 0);
     vsf__work work;
     work.fn = fn;
     work.arg = arg;
@@ -137,19 +71,12 @@ static int vsf__run(vsf__progress *progress, uint32_t items, uint32_t chunk, voi
     for (work.offset = 0; work.offset < chunks; work.offset += batch) {
         uint32_t count = chunks - work.offset < batch ? chunks - work.offset : batch;
         uint64_t units = (uint64_t)count * chunk;
-        if (host && host->job.run) {
-            host->job.run(host->job.user, count, vsf__work_chunk, &work);
-        } else {
-            for (i = 0; i < count; i++) {
-                vsf__work_chunk(&work, i);
-            }
-        }
+        lao__job_run(job, count, vsf__work_chunk, &work);
         progress->done += units;
         if (progress->done > progress->total) {
             progress->done = progress->total;
         }
-        if (host && host->job.progress &&
-            host->job.progress(host->job.user, progress->done, progress->total)) {
+        if (lao__job_cancelled(job, progress->done, progress->total)) {
             return -1;
         }
     }

@@ -217,11 +217,11 @@ static void vsf__ring_fill(void *arg, uint32_t first, uint32_t end) {
     }
 }
 
-static void vsf__buffers_parts(vsf_buffers *b, vsf__block *block) {
-    b->points = vsf__part_float(block, 4 * (uint64_t)b->vertex_count);
-    b->normals = vsf__part_float(block, 4 * (uint64_t)b->vertex_count);
-    b->rings = vsf__part_float(block, 4 * (uint64_t)b->ring_count);
-    b->triangles = vsf__part_float(block, 4 * (uint64_t)b->triangle_count);
+static void vsf__buffers_parts(vsf_buffers *b, lao__block *block) {
+    b->points = lao__part_float(block, 4 * (uint64_t)b->vertex_count);
+    b->normals = lao__part_float(block, 4 * (uint64_t)b->vertex_count);
+    b->rings = lao__part_float(block, 4 * (uint64_t)b->ring_count);
+    b->triangles = lao__part_float(block, 4 * (uint64_t)b->triangle_count);
 }
 
 /* What a device cannot take is said before any memory is taken. */
@@ -258,7 +258,7 @@ static lao_result vsf__buffers_check(const vsf_host *host, const vsf_mesh *mesh,
 VSF_API lao_result vsf_buffers_make(const vsf_host *host, const vsf_mesh *mesh, uint32_t max_texels,
                                     vsf_buffers *buffers) {
     vsf_buffers b;
-    vsf__block block = {NULL, 0};
+    lao__block block = {NULL, 0};
     vsf__progress progress;
     vsf__ringer ringer;
     uint32_t *starts, i;
@@ -276,11 +276,11 @@ VSF_API lao_result vsf_buffers_make(const vsf_host *host, const vsf_mesh *mesh, 
         return result;
     }
     vsf__buffers_parts(&b, &block);
-    b.memory = vsf__take(&b.allocator, block.used, 1);
-    starts = (uint32_t *)vsf__take(&b.allocator, (uint64_t)mesh->vertex_count + 1, sizeof *starts);
+    b.memory = lao__take(&b.allocator, block.used, 1);
+    starts = (uint32_t *)lao__take(&b.allocator, (uint64_t)mesh->vertex_count + 1, sizeof *starts);
     if (!b.memory || !starts) {
-        vsf__give(&b.allocator, b.memory);
-        vsf__give(&b.allocator, starts);
+        lao__give(&b.allocator, b.memory);
+        lao__give(&b.allocator, starts);
         return vsf__fail(host, VSF_LOG_MEMORY, "buffers of %u triangles", mesh->triangle_count);
     }
     block.base = (unsigned char *)b.memory;
@@ -304,7 +304,7 @@ VSF_API lao_result vsf_buffers_make(const vsf_host *host, const vsf_mesh *mesh, 
     if (vsf__run(&progress, mesh->vertex_count, VSF__CHUNK, &ringer, vsf__ring_fill)) {
         result = vsf__fail(host, VSF_LOG_CANCELLED, NULL);
     }
-    vsf__give(&b.allocator, starts);
+    lao__give(&b.allocator, starts);
     if (result != LAO_OK) {
         vsf_buffers_free(&b);
         return result;
@@ -315,7 +315,7 @@ VSF_API lao_result vsf_buffers_make(const vsf_host *host, const vsf_mesh *mesh, 
 
 VSF_API void vsf_buffers_free(vsf_buffers *buffers) {
     if (buffers && buffers->memory) {
-        vsf__give(&buffers->allocator, buffers->memory);
+        lao__give(&buffers->allocator, buffers->memory);
     }
     if (buffers) {
         memset(buffers, 0, sizeof *buffers);

@@ -68,25 +68,25 @@ static lao_result vsf__mesh_check(const vsf_host *host, const vsf_mesh_desc *des
     return LAO_OK;
 }
 
-static void vsf__build_parts(vsf__build *b, vsf__block *block) {
+static void vsf__build_parts(vsf__build *b, lao__block *block) {
     uint64_t n = b->desc->vertex_count, m = b->desc->triangle_count, size = 16;
     while (size < 2 * n) {
         size *= 2;
     }
     b->table_mask = (uint32_t)(size - 1);
-    b->target = vsf__part_u32(block, n);
-    b->source = vsf__part_u32(block, n);
-    b->table = vsf__part_u32(block, b->desc->flags & VSF_MESH_NO_WELD ? 0 : size);
-    b->corners = vsf__part_u32(block, 3 * m);
-    b->origin = vsf__part_u32(block, m);
-    b->opposites = vsf__part_u32(block, 3 * m);
-    b->order[0] = vsf__part_u32(block, 3 * m);
-    b->order[1] = vsf__part_u32(block, 3 * m);
-    b->starts = vsf__part_u32(block, n + 1);
-    b->part = vsf__part_u32(block, m);
-    b->queue = vsf__part_u32(block, m);
-    b->flags = (unsigned char *)vsf__part(block, m, 1);
-    b->borders = (unsigned char *)vsf__part(block, n, 1);
+    b->target = lao__part_u32(block, n);
+    b->source = lao__part_u32(block, n);
+    b->table = lao__part_u32(block, b->desc->flags & VSF_MESH_NO_WELD ? 0 : size);
+    b->corners = lao__part_u32(block, 3 * m);
+    b->origin = lao__part_u32(block, m);
+    b->opposites = lao__part_u32(block, 3 * m);
+    b->order[0] = lao__part_u32(block, 3 * m);
+    b->order[1] = lao__part_u32(block, 3 * m);
+    b->starts = lao__part_u32(block, n + 1);
+    b->part = lao__part_u32(block, m);
+    b->queue = lao__part_u32(block, m);
+    b->flags = (unsigned char *)lao__part(block, m, 1);
+    b->borders = (unsigned char *)lao__part(block, n, 1);
 }
 
 /* target = the first vertex at the same place, VSF_NONE where there is no place */
@@ -426,27 +426,27 @@ static void vsf__drop_flat(vsf__build *b) {
 
 /* ---- the mesh itself */
 
-static void vsf__mesh_parts(vsf_mesh *mesh, const vsf_attribute *attributes, vsf__block *block) {
+static void vsf__mesh_parts(vsf_mesh *mesh, const vsf_attribute *attributes, lao__block *block) {
     uint64_t n = mesh->vertex_count, m = mesh->triangle_count;
     uint32_t i;
-    mesh->positions = vsf__part_float(block, 3 * n);
-    mesh->normals = vsf__part_float(block, 3 * n);
-    mesh->areas = (double *)vsf__part(block, n, sizeof(double));
-    mesh->triangles = vsf__part_u32(block, 3 * m);
-    mesh->opposites = vsf__part_u32(block, 3 * m);
-    mesh->ring_starts = vsf__part_u32(block, n + 1);
-    mesh->ring_corners = vsf__part_u32(block, 3 * m);
-    mesh->borders = (unsigned char *)vsf__part(block, n, 1);
-    mesh->vertex_sources = vsf__part_u32(block, n);
-    mesh->triangle_sources = vsf__part_u32(block, m);
-    mesh->vertex_targets = vsf__part_u32(block, mesh->source_count);
+    mesh->positions = lao__part_float(block, 3 * n);
+    mesh->normals = lao__part_float(block, 3 * n);
+    mesh->areas = (double *)lao__part(block, n, sizeof(double));
+    mesh->triangles = lao__part_u32(block, 3 * m);
+    mesh->opposites = lao__part_u32(block, 3 * m);
+    mesh->ring_starts = lao__part_u32(block, n + 1);
+    mesh->ring_corners = lao__part_u32(block, 3 * m);
+    mesh->borders = (unsigned char *)lao__part(block, n, 1);
+    mesh->vertex_sources = lao__part_u32(block, n);
+    mesh->triangle_sources = lao__part_u32(block, m);
+    mesh->vertex_targets = lao__part_u32(block, mesh->source_count);
     mesh->attributes =
-        (vsf_attribute *)vsf__part(block, mesh->attribute_count, sizeof(vsf_attribute));
+        (vsf_attribute *)lao__part(block, mesh->attribute_count, sizeof(vsf_attribute));
     for (i = 0; i < mesh->attribute_count; i++) {
         uint32_t components = attributes[i].components ? attributes[i].components : 1;
         size_t length = strlen(attributes[i].name) + 1;
-        float *values = vsf__part_float(block, n * components);
-        char *name = (char *)vsf__part(block, length, 1);
+        float *values = lao__part_float(block, n * components);
+        char *name = (char *)lao__part(block, length, 1);
         if (block->base) {
             memcpy(name, attributes[i].name, length);
             mesh->attributes[i].name = name;
@@ -599,7 +599,7 @@ static void vsf__log_warnings(const vsf_host *host, const vsf_mesh *mesh) {
 /* The second half: a mesh of what was picked. */
 static lao_result vsf__mesh_finish(vsf__build *b, vsf__progress *progress, vsf_mesh *mesh) {
     vsf_mesh m;
-    vsf__block block = {NULL, 0};
+    lao__block block = {NULL, 0};
     uint32_t v;
     memset(&m, 0, sizeof m);
     m.allocator = vsf__allocator(b->host);
@@ -608,7 +608,7 @@ static lao_result vsf__mesh_finish(vsf__build *b, vsf__progress *progress, vsf_m
     m.source_count = b->desc->vertex_count;
     m.attribute_count = b->desc->attribute_count;
     vsf__mesh_parts(&m, b->desc->attributes, &block);
-    m.memory = vsf__take(&m.allocator, block.used, 1);
+    m.memory = lao__take(&m.allocator, block.used, 1);
     if (!m.memory) {
         return vsf__fail(b->host, VSF_LOG_MEMORY, "%u vertices, %u triangles", m.vertex_count,
                          m.triangle_count);
@@ -677,7 +677,7 @@ static lao_result vsf__mesh_make(vsf__build *b, vsf_mesh *mesh) {
 VSF_API lao_result vsf_mesh_build(const vsf_host *host, const vsf_mesh_desc *desc, vsf_mesh *mesh) {
     lao_allocator allocator = vsf__allocator(host);
     vsf__build b;
-    vsf__block block = {NULL, 0};
+    lao__block block = {NULL, 0};
     void *memory;
     lao_result result;
     if (!desc || !mesh) {
@@ -691,7 +691,7 @@ VSF_API lao_result vsf_mesh_build(const vsf_host *host, const vsf_mesh_desc *des
     b.host = host;
     b.desc = desc;
     vsf__build_parts(&b, &block);
-    memory = vsf__take(&allocator, block.used + 16, 1);
+    memory = lao__take(&allocator, block.used + 16, 1);
     if (!memory) {
         return vsf__fail(host, VSF_LOG_MEMORY, "%u vertices, %u triangles", desc->vertex_count,
                          desc->triangle_count);
@@ -700,13 +700,13 @@ VSF_API lao_result vsf_mesh_build(const vsf_host *host, const vsf_mesh_desc *des
     block.used = 0;
     vsf__build_parts(&b, &block);
     result = vsf__mesh_make(&b, mesh);
-    vsf__give(&allocator, memory);
+    lao__give(&allocator, memory);
     return result;
 }
 
 VSF_API void vsf_mesh_free(vsf_mesh *mesh) {
     if (mesh && mesh->memory) {
-        vsf__give(&mesh->allocator, mesh->memory);
+        lao__give(&mesh->allocator, mesh->memory);
     }
     if (mesh) {
         memset(mesh, 0, sizeof *mesh);

@@ -142,7 +142,7 @@ VSF_API lao_result vsf_object_make(const vsf_host *host, const vsf_mesh *mesh, u
                          "distances of %u vertices need %u texels, the device has %u", n, 2 * n,
                          max_texels);
     }
-    extra = (float *)vsf__take(&a, 3 * (uint64_t)n + (uint64_t)4 * VSF_MAP_COLORS, sizeof *extra);
+    extra = (float *)lao__take(&a, 3 * (uint64_t)n + (uint64_t)4 * VSF_MAP_COLORS, sizeof *extra);
     if (!extra) {
         vsf_buffers_free(&buffers);
         return vsf__fail(host, VSF_LOG_MEMORY, "distances of %u vertices", n);
@@ -173,7 +173,7 @@ VSF_API lao_result vsf_object_make(const vsf_host *host, const vsf_mesh *mesh, u
 
 VSF_API void vsf_object_free(vsf_object *object) {
     if (object && object->near_pair) {
-        vsf__give(&object->allocator, object->near_pair);
+        lao__give(&object->allocator, object->near_pair);
         vsf_buffers_free(&object->buffers);
         memset(object, 0, sizeof *object);
     }

@@ -144,7 +144,7 @@ static lao_result vsf__near_time(vsf__progress *progress, const vsf_near *n, dou
     query->brute = (n->flags & VSF_NEAR_BRUTE) != 0;
     cancelled = vsf__run(progress, x->vertex_count, 512, query, vsf__query_vertices);
     *lit_count += query->lit.piece_count;
-    vsf__give(&allocator, query->lit.memory);
+    lao__give(&allocator, query->lit.memory);
     query->lit.memory = NULL;
     return cancelled ? vsf__fail(progress->host, VSF_LOG_CANCELLED, NULL) : LAO_OK;
 }
@@ -155,11 +155,11 @@ static lao_result vsf__near_fill(const vsf_host *host, vsf_near *n, const vsf_ne
     uint64_t *counts;
     uint32_t step;
     lao_result result = LAO_OK;
-    n->values = vsf__take(&n->allocator, values, n->bytes);
-    counts = (uint64_t *)vsf__take(&n->allocator, 65536, sizeof *counts);
+    n->values = lao__take(&n->allocator, values, n->bytes);
+    counts = (uint64_t *)lao__take(&n->allocator, 65536, sizeof *counts);
     if (!n->values || !counts) {
-        vsf__give(&n->allocator, n->values);
-        vsf__give(&n->allocator, counts);
+        lao__give(&n->allocator, n->values);
+        lao__give(&n->allocator, counts);
         n->values = NULL;
         return vsf__fail(host, VSF_LOG_MEMORY, "%u vertices at %u times", n->vertex_count,
                          n->step_count);
@@ -177,10 +177,10 @@ static lao_result vsf__near_fill(const vsf_host *host, vsf_near *n, const vsf_ne
     if (result == LAO_OK) {
         n->gamma = vsf__gamma(n, counts);
     } else {
-        vsf__give(&n->allocator, n->values);
+        lao__give(&n->allocator, n->values);
         n->values = NULL;
     }
-    vsf__give(&n->allocator, counts);
+    lao__give(&n->allocator, counts);
     return result;
 }
 
@@ -244,7 +244,7 @@ static double vsf__kth(const uint32_t *values, uint32_t count, uint32_t k) {
 static int vsf__median_time(const lao_allocator *allocator, const vsf_near_desc *desc,
                             double *median, double *last) {
     uint32_t lines = desc->offsets ? desc->line_count : desc->point_count != 0, i, line, count = 0;
-    uint32_t *times = (uint32_t *)vsf__take(allocator, lines, sizeof *times);
+    uint32_t *times = (uint32_t *)lao__take(allocator, lines, sizeof *times);
     *median = *last = 0;
     if (!times) {
         return -1;
@@ -264,7 +264,7 @@ static int vsf__median_time(const lao_allocator *allocator, const vsf_near_desc 
             0.5 * (vsf__kth(times, count, (count - 1) / 2) + vsf__kth(times, count, count / 2));
         *last = vsf__kth(times, count, count - 1);
     }
-    vsf__give(allocator, times);
+    lao__give(allocator, times);
     return 0;
 }
 
@@ -307,7 +307,7 @@ VSF_API lao_result vsf_near_make(const vsf_host *host, const vsf_near_desc *desc
 VSF_API void vsf_near_free(vsf_near *table) {
     if (table && table->index) {
         vsf__index_free(&table->allocator, (vsf__index *)table->index);
-        vsf__give(&table->allocator, table->values);
+        lao__give(&table->allocator, table->values);
     }
     if (table) {
         memset(table, 0, sizeof *table);
@@ -328,7 +328,7 @@ VSF_API lao_result vsf_near_update(const vsf_host *host, vsf_near *table, double
     vsf__near_beta(&n, beta);
     result = vsf__near_fill(host, &n, table);
     if (result == LAO_OK) {
-        vsf__give(&table->allocator, table->values);
+        lao__give(&table->allocator, table->values);
         *table = n;
     }
     return result;

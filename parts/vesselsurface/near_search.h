@@ -189,15 +189,15 @@ static void vsf__order_tracks(vsf__index *x, const vsf__track *tracks, vsf__code
     }
 }
 
-static void vsf__index_parts(vsf__index *x, vsf__block *block) {
-    x->positions = vsf__part_float(block, 3 * (uint64_t)x->vertex_count);
-    x->vertices = vsf__part_u32(block, x->vertex_count);
-    x->tracks = (vsf__track *)vsf__part(block, x->track_count, sizeof(vsf__track));
+static void vsf__index_parts(vsf__index *x, lao__block *block) {
+    x->positions = lao__part_float(block, 3 * (uint64_t)x->vertex_count);
+    x->vertices = lao__part_u32(block, x->vertex_count);
+    x->tracks = (vsf__track *)lao__part(block, x->track_count, sizeof(vsf__track));
 }
 static void vsf__index_free(const lao_allocator *allocator, vsf__index *x) {
     if (x) {
-        vsf__give(allocator, x->memory);
-        vsf__give(allocator, x);
+        lao__give(allocator, x->memory);
+        lao__give(allocator, x);
     }
 }
 static void vsf__index_fill(vsf__index *x, const vsf_near_desc *desc, vsf__track *tracks,
@@ -222,8 +222,8 @@ static void vsf__index_fill(vsf__index *x, const vsf_near_desc *desc, vsf__track
     vsf__order_tracks(x, tracks, codes, low, scale);
 }
 static vsf__index *vsf__index_make(const lao_allocator *allocator, const vsf_near_desc *desc) {
-    vsf__index *x = (vsf__index *)vsf__take(allocator, 1, sizeof *x);
-    vsf__block block = {NULL, 0};
+    vsf__index *x = (vsf__index *)lao__take(allocator, 1, sizeof *x);
+    lao__block block = {NULL, 0};
     vsf__track *tracks;
     vsf__coded *codes;
     uint64_t most;
@@ -235,10 +235,10 @@ static vsf__index *vsf__index_make(const lao_allocator *allocator, const vsf_nea
     x->track_count = vsf__tracks(desc, NULL);
     x->period = desc->period;
     vsf__index_parts(x, &block);
-    x->memory = vsf__take(allocator, block.used, 1);
+    x->memory = lao__take(allocator, block.used, 1);
     most = x->vertex_count > x->track_count ? x->vertex_count : x->track_count;
-    tracks = (vsf__track *)vsf__take(allocator, x->track_count, sizeof *tracks);
-    codes = (vsf__coded *)vsf__take(allocator, 2 * most, sizeof *codes);
+    tracks = (vsf__track *)lao__take(allocator, x->track_count, sizeof *tracks);
+    codes = (vsf__coded *)lao__take(allocator, 2 * most, sizeof *codes);
     if (x->memory && tracks && codes) {
         block.base = (unsigned char *)x->memory;
         block.used = 0;
@@ -248,8 +248,8 @@ static vsf__index *vsf__index_make(const lao_allocator *allocator, const vsf_nea
         vsf__index_free(allocator, x);
         x = NULL;
     }
-    vsf__give(allocator, tracks);
-    vsf__give(allocator, codes);
+    lao__give(allocator, tracks);
+    lao__give(allocator, codes);
     return x;
 }
 
@@ -344,7 +344,7 @@ static void vsf__lit_boxes(vsf__lit *lit) {
 /* Pieces lit at a time and the boxes above them. Returns 0, or -1 without memory. */
 static int vsf__lit_make(const lao_allocator *allocator, const vsf__index *x, double time,
                          double reach, vsf__lit *lit) {
-    vsf__block block = {NULL, 0};
+    lao__block block = {NULL, 0};
     uint64_t pieces = 0, boxes = 0, below;
     uint32_t i;
     memset(lit, 0, sizeof *lit);
@@ -362,10 +362,10 @@ static int vsf__lit_make(const lao_allocator *allocator, const vsf__index *x, do
         boxes += lit->count[lit->level_count];
     }
     for (i = 0; i < 2; i++) {
-        lit->pieces = (vsf__piece *)vsf__part(&block, pieces, sizeof(vsf__piece));
-        lit->boxes = (vsf__box *)vsf__part(&block, boxes, sizeof(vsf__box));
+        lit->pieces = (vsf__piece *)lao__part(&block, pieces, sizeof(vsf__piece));
+        lit->boxes = (vsf__box *)lao__part(&block, boxes, sizeof(vsf__box));
         if (i == 0) {
-            lit->memory = vsf__take(allocator, block.used, 1);
+            lit->memory = lao__take(allocator, block.used, 1);
             if (!lit->memory) {
                 return -1;
             }

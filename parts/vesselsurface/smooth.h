@@ -109,7 +109,7 @@ static lao_result vsf__smooth_checked(const vsf_host *host, vsf_mesh *mesh, uint
     vsf__progress progress =
         vsf__progress_make(host, (uint64_t)mesh->vertex_count * (2 * (uint64_t)steps + 2));
     vsf__smoother s;
-    vsf__block block = {NULL, 0};
+    lao__block block = {NULL, 0};
     uint64_t n = mesh->vertex_count, round;
     void *memory = NULL;
     size_t i;
@@ -118,13 +118,13 @@ static lao_result vsf__smooth_checked(const vsf_host *host, vsf_mesh *mesh, uint
     s.mesh = mesh;
     s.uniform = uniform;
     for (round = 0; round < 2; round++) {
-        s.starts = vsf__part_u32(&block, n + 1);
-        s.neighbours = vsf__part_u32(&block, 6 * (uint64_t)mesh->triangle_count);
-        s.weights = (double *)vsf__part(&block, 6 * (uint64_t)mesh->triangle_count, sizeof(double));
-        s.from = (double *)vsf__part(&block, 3 * n, sizeof(double));
-        s.to = (double *)vsf__part(&block, 3 * n, sizeof(double));
+        s.starts = lao__part_u32(&block, n + 1);
+        s.neighbours = lao__part_u32(&block, 6 * (uint64_t)mesh->triangle_count);
+        s.weights = (double *)lao__part(&block, 6 * (uint64_t)mesh->triangle_count, sizeof(double));
+        s.from = (double *)lao__part(&block, 3 * n, sizeof(double));
+        s.to = (double *)lao__part(&block, 3 * n, sizeof(double));
         if (round == 0) {
-            memory = vsf__take(&allocator, block.used, 1);
+            memory = lao__take(&allocator, block.used, 1);
             if (!memory) {
                 return vsf__fail(host, VSF_LOG_MEMORY, "smoothing");
             }
@@ -147,7 +147,7 @@ static lao_result vsf__smooth_checked(const vsf_host *host, vsf_mesh *mesh, uint
         }
         vsf__mesh_shape(&quiet, mesh);
     }
-    vsf__give(&allocator, memory);
+    lao__give(&allocator, memory);
     return cancelled ? vsf__fail(host, VSF_LOG_CANCELLED, NULL) : LAO_OK;
 }
 VSF_API lao_result vsf_mesh_smooth(const vsf_host *host, vsf_mesh *mesh,
@@ -180,16 +180,16 @@ typedef struct vsf__loop {
     uint32_t vertex_count;
 } vsf__loop;
 
-static void vsf__loop_parts(vsf__loop *l, vsf__block *block) {
+static void vsf__loop_parts(vsf__loop *l, lao__block *block) {
     uint32_t i;
-    l->edge_vertices = vsf__part_u32(block, 3 * (uint64_t)l->mesh->triangle_count);
-    l->triangles = vsf__part_u32(block, 12 * (uint64_t)l->mesh->triangle_count);
-    l->positions = vsf__part_float(block, 3 * (uint64_t)l->vertex_count);
+    l->edge_vertices = lao__part_u32(block, 3 * (uint64_t)l->mesh->triangle_count);
+    l->triangles = lao__part_u32(block, 12 * (uint64_t)l->mesh->triangle_count);
+    l->positions = lao__part_float(block, 3 * (uint64_t)l->vertex_count);
     l->attributes =
-        (vsf_attribute *)vsf__part(block, l->mesh->attribute_count, sizeof(vsf_attribute));
+        (vsf_attribute *)lao__part(block, l->mesh->attribute_count, sizeof(vsf_attribute));
     for (i = 0; i < l->mesh->attribute_count; i++) {
         uint32_t n = l->mesh->attributes[i].components;
-        float *values = vsf__part_float(block, (uint64_t)l->vertex_count * n);
+        float *values = lao__part_float(block, (uint64_t)l->vertex_count * n);
         if (block->base) {
             l->attributes[i] = l->mesh->attributes[i];
             l->attributes[i].values = values;
@@ -310,7 +310,7 @@ static lao_result vsf__subdivide_once(const vsf_host *host, const vsf_mesh *mesh
     lao_allocator allocator = vsf__allocator(host);
     uint64_t vertices = (uint64_t)mesh->vertex_count + vsf__edge_count(mesh);
     vsf__loop l;
-    vsf__block block = {NULL, 0};
+    lao__block block = {NULL, 0};
     vsf_mesh_desc desc;
     lao_result result;
     void *memory;
@@ -322,7 +322,7 @@ static lao_result vsf__subdivide_once(const vsf_host *host, const vsf_mesh *mesh
     l.mesh = mesh;
     l.vertex_count = (uint32_t)vertices;
     vsf__loop_parts(&l, &block);
-    memory = vsf__take(&allocator, block.used, 1);
+    memory = lao__take(&allocator, block.used, 1);
     if (!memory) {
         return LAO_ERROR_OUT_OF_MEMORY;
     }
@@ -353,7 +353,7 @@ static lao_result vsf__subdivide_once(const vsf_host *host, const vsf_mesh *mesh
     if (result == LAO_OK) {
         finer->source_count = 0;
     }
-    vsf__give(&allocator, memory);
+    lao__give(&allocator, memory);
     return result;
 }
 
