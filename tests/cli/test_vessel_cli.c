@@ -419,7 +419,7 @@ static void test_turn(void **state) {
     (void)state;
     expect_ok(RUN("vessel y.swc --unit mm " SMALL "--style plain --frames 8 -o t%%d.png"));
     for (int frame = 0; frame < 8; frame++) {
-        char path[16];
+        char path[32]; /* an int fits, whatever a compiler makes of the loop */
         pixels p;
         snprintf(path, sizeof path, "t%d.png", frame);
         read_pixels(path, &p);
