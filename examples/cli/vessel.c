@@ -133,8 +133,10 @@ static bool add_forms(cli_tree *tree) {
         char *end;
         double mm = strtod(text, &end);
         if (!from && (*end || end == text || !(mm >= 0 && mm < 1e6)))
-            return cli_fail("%s: its nodes have no attribute '%s' for --uncertainty", tree->name,
-                            text);
+            return cli_fail(
+                "%s: its nodes have no attribute '%s' for --uncertainty; write MM or one "
+                "that lineao info lists",
+                tree->name, text);
         if (!add_form(tree, 0, SDV_UNCERTAINTY, mm, from))
             return false;
     }
@@ -417,6 +419,8 @@ static bool make_scene(cli_tree *tree) {
     set->source = tree->source;
     set->name = tree->name;
     set->settings = tree->source->settings;
+    set->settings.occlusion = 0; /* it has no lines: half of all shaders need not be built */
+    set->settings.set |= LAO_SET(occlusion);
     set->object = &tree->object.desc;
     set->tree = tree;
     make_settings(tree, &tree->settings);

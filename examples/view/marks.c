@@ -115,7 +115,8 @@ void marks_draw(const view *v) {
         mark_line(v, &v->hovered, hovered_color);
     hands_marks(v);
     ui_clip_end(true);
-    if (v->hovered.kind != PICKED_NOTHING && !v->hovered_flat && v->pointer.button < 0)
+    if (v->hovered.kind != PICKED_NOTHING && !v->hovered_flat && v->pointer.button < 0 &&
+        !ui_has_pointer()) /* a dialog has opened there */
         tell(&v->hovered);
 }
 

@@ -231,7 +231,7 @@ void panel_draw(view *v) {
         compare_marks(v);
     invite(v);
     film_panel(v);
-    bool busy = work(v) || v->film.running;
+    bool busy = work(v) || v->film.running || v->keys;
     keys_dialog(v);
     said(v, busy);
 }

@@ -205,10 +205,10 @@ static void pass_times(const compare_result *const r[2]) {
     if (!ui_table("passes", 3, 0))
         return;
     ui_cell();
-    ui_text_dim("milliseconds");
+    ui_text("milliseconds");
     for (int k = 0; k < 2; k++) {
         ui_cell();
-        ui_text_dim(k ? "right" : "left");
+        ui_text(k ? "right" : "left");
     }
     ui_cell();
     ui_text("frame");
@@ -305,7 +305,7 @@ void compare_draw(view *v) {
     bool news = compare_take(v->compare);
     compare_results(v->compare, r);
     if (news) {
-        v->awake += v->awake == 0; /* the panel, which was drawn before, tells of it */
+        v->awake = v->awake > 2 ? v->awake : 2; /* the panel tells of it, then has room for it */
         c->ready = r[0]->pixels && r[1]->pixels;
         c->count = compare_differences(r[0], r[1]);
         for (int k = 0; k < 2 && c->ready; k++)

@@ -93,7 +93,10 @@ static void row_of(view *v, uint32_t index, int setting) {
     }
     panel_explain(row);
     ui_cell();
-    if ((doc->settings[index].edited >> setting & 1) && ui_small_button("x##reset")) {
+    bool edited = doc->settings[index].edited >> setting & 1;
+    if (!edited) /* so that the others do not move when there is one */
+        ui_no_button("x##reset");
+    else if (ui_small_button("x##reset")) {
         document_reset(doc, index, setting);
         changed(v, index, setting);
     }

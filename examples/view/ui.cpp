@@ -299,6 +299,11 @@ bool ui_small_button(const char *label) {
     return placed(label, ImGui::SmallButton(label));
 }
 
+void ui_no_button(const char *label) {
+    const ImGuiStyle &style = ImGui::GetStyle();
+    ImGui::Dummy(ImVec2(ImGui::CalcTextSize(label, nullptr, true).x + 2 * style.FramePadding.x, 0));
+}
+
 bool ui_toggle(const char *label, bool *value) {
     return placed(label, ImGui::Checkbox(label, value));
 }
@@ -402,13 +407,9 @@ void ui_width_left(float *width) {
 bool ui_table(const char *name, int columns, int widest) {
     if (!ImGui::BeginTable(name, columns, ImGuiTableFlags_RowBg | ImGuiTableFlags_SizingFixedFit))
         return false;
-    float button = ImGui::CalcTextSize("x").x + 2 * ImGui::GetStyle().FramePadding.x;
-    for (int i = 0; i < columns; i++) {
-        bool wide = i == widest;
-        ImGui::TableSetupColumn(
-            "", wide ? ImGuiTableColumnFlags_WidthStretch : ImGuiTableColumnFlags_WidthFixed,
-            i == columns - 1 && !wide ? button : 0);
-    }
+    for (int i = 0; i < columns; i++)
+        ImGui::TableSetupColumn("", i == widest ? ImGuiTableColumnFlags_WidthStretch
+                                                : ImGuiTableColumnFlags_WidthFixed);
     return true;
 }
 

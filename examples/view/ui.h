@@ -70,6 +70,7 @@ void ui_text_dim(const char *text); /* wrapped */
 void ui_text_error(const char *text);
 bool ui_button(const char *label);
 bool ui_small_button(const char *label);
+void ui_no_button(const char *label); /* as wide as that one */
 bool ui_toggle(const char *label, bool *value);
 /* Is chosen among others. */
 bool ui_choice(const char *label, bool chosen);
@@ -92,8 +93,7 @@ void ui_space(void);
 void ui_line(void);
 void ui_width(float width);       /* of the next widget; negative: up to that far from the border */
 void ui_width_left(float *width); /* of the panel */
-/* Rows of `columns` cells, each as wide as what it holds but for one, which takes the rest; the
- * last is never narrower than a small button of one letter. */
+/* Rows of `columns` cells, each as wide as what it holds but for one, which takes the rest. */
 bool ui_table(const char *name, int columns, int widest);
 void ui_cell(void);
 void ui_table_end(void);

@@ -35,11 +35,13 @@ typedef struct fixture {
     desktop *desktop;
 } fixture;
 
-/* Words of the viewer: the backend, a small window, then `more` (ends with NULL). */
+/* Words of the viewer: the backend, a small window, then `more` (ends with NULL). Nobody looks at
+ * it, so that it need not wait for a monitor; follows_the_monitor does. */
 static void start(fixture *f, const char *const *more) {
     char size[32];
-    const char *words[32] = {"--backend", f->backend, "--window", size, "--scale", SCALE};
-    int count = 6;
+    const char *words[32] = {"--backend", f->backend, "--window",  size,
+                             "--scale",   SCALE,      "--no-vsync"};
+    int count = 7;
     snprintf(size, sizeof size, "%dx%d", WIDTH, HEIGHT);
     if (strcmp(f->backend, "vk") == 0)
         words[count++] = "--validate";
@@ -266,12 +268,23 @@ static void focuses_surfaces(fixture *f) {
     assert_int_not_equal(system("cmp -s program.png sharp.png"), 0); /* the blur was one */
 }
 
+/* Of a wall that nothing lights: its look is offered, but nothing of that light. */
+static void offers_what_has_a_meaning(desktop *d) {
+    char name[64];
+    assert_true(user_finds(d, "near_colors ##value", 0, name, sizeof name));
+    assert_true(user_finds(d, "value_low ##value", 0, name, sizeof name));
+    assert_false(user_finds(d, "near_gamma ##value", 0, name, sizeof name));
+    assert_false(user_finds(d, "near_part ##value", 0, name, sizeof name));
+    assert_false(user_finds(d, "near_steps ##value", 0, name, sizeof name));
+}
+
 static void saves_surfaces(void **state) {
     static const char *const words[] = {"surface", "--scene",    "bone", "--ssaa",
                                         "1",       "--contours", "0.3",  NULL};
     fixture *f = *state;
     start(f, words);
     writes_what_the_program_writes(f->desktop, "opacity");
+    offers_what_has_a_meaning(f->desktop);
     focuses_surfaces(f);
     quit(f);
 }
@@ -373,14 +386,18 @@ static void hovers_and_picks(desktop *d) {
     moves_the_flat_tree(d, leaf);
 }
 
-static void start_tree(fixture *f) {
-    static const char *const words[] = {
+/* marks: what is at risk is hatched, which wants texture coordinates and all their shaders. */
+static void start_tree(fixture *f, bool marks) {
+    const char *words[] = {
         "vessel",   "aim.swc",
         "--unit",   "mm",
         "--grid",   "32",
         "--ssaa",   "1",
         "--camera", "{\"eye\":[0,-200,25],\"center\":[0,0,25],\"up\":[0,0,1],\"ortho_height\":80}",
+        "--set",    "parameterization=off",
         NULL};
+    if (marks)
+        words[10] = NULL;
     write_file("aim.swc", tree_file);
     start(f, words);
 }
@@ -421,7 +438,7 @@ static void places_on_trees(void **state) {
     fixture *f = *state;
     desktop *d = f->desktop;
     char before[8192];
-    start_tree(f);
+    start_tree(f, false);
     writes_what_the_program_writes(d, "shadow_ratio");
     user_types(d, "Home");
     hovers_and_picks(d);
@@ -471,7 +488,7 @@ static void long_places_on_trees(void **state) {
     static char before[COUNT][8192];
     fixture *f = *state;
     desktop *d = f->desktop;
-    start_tree(f);
+    start_tree(f, true);
     for (int i = 0; i < COUNT; i++) {
         hear_command(d, before[i]);
         assert_true(!*flags[i] || !strstr(before[i], flags[i]));
@@ -644,6 +661,19 @@ static void names_what_it_points_at(desktop *d) {
     }
     viewer_rests(d);
     assert_int_equal(viewer_said(d, "frame "), frames);
+}
+
+/* Of a file that cannot be read; then there is nothing to draw, and nothing is done. */
+static void explains_and_rests(void **state) {
+    fixture *f = *state;
+    const char *words[] = {"--backend", f->backend, "--window", "700x400", "broken.swc", NULL};
+    write_file("broken.swc", "1 1 0 0\n");
+    viewer_start(f->desktop, viewer, words);
+    assert_non_null(strstr(viewer_hears(f->desktop, "error "), "broken.swc"));
+    viewer_rests(f->desktop);
+    user_clicks(f->desktop, "Close");
+    viewer_rests(f->desktop);
+    quit(f);
 }
 
 /* Lines, a tree and a wall in one picture; then without one of them. */
@@ -916,6 +946,7 @@ int main(int argc, char **argv) {
         {"makes_videos", makes_videos, NULL, clean_up, &f},
         {"follows_the_monitor", follows_the_monitor, NULL, clean_up, &f},
         {"picks_and_opens", picks_and_opens, NULL, clean_up, &f},
+        {"explains_and_rests", explains_and_rests, NULL, clean_up, &f},
         {"mixes", mixes, NULL, clean_up, &f},
         {"relights_walls", relights_walls, NULL, clean_up, &f},
         {"long_places_on_trees", long_places_on_trees, NULL, clean_up, &f},
