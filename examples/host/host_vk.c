@@ -521,9 +521,8 @@ size_t host_vk_texel_size(VkFormat format) {
     }
 }
 
-/* Everything before is finished and visible, in the other layout, for everything after. */
-static void full_barrier(VkCommandBuffer commands, const host_vk_image *image, VkImageLayout from,
-                         VkImageLayout to) {
+void host_vk_image_layout(VkCommandBuffer commands, const host_vk_image *image, VkImageLayout from,
+                          VkImageLayout to) {
     const VkImageMemoryBarrier barrier = {
         .sType = VK_STRUCTURE_TYPE_IMAGE_MEMORY_BARRIER,
         .srcAccessMask = VK_ACCESS_MEMORY_WRITE_BIT,
@@ -551,12 +550,12 @@ static bool copy(host_vk *host, const host_vk_image *image, VkImageLayout layout
         .imageSubresource = {image->aspect, 0, 0, 1},
         .imageExtent = {image->width, image->height, 1},
     };
-    full_barrier(commands, image, write ? VK_IMAGE_LAYOUT_UNDEFINED : layout, here);
+    host_vk_image_layout(commands, image, write ? VK_IMAGE_LAYOUT_UNDEFINED : layout, here);
     if (write)
         vkCmdCopyBufferToImage(commands, buffer, image->image, here, 1, &region);
     else
         vkCmdCopyImageToBuffer(commands, image->image, here, buffer, 1, &region);
-    full_barrier(commands, image, here, layout);
+    host_vk_image_layout(commands, image, here, layout);
     const VkMemoryBarrier to_host = {
         .sType = VK_STRUCTURE_TYPE_MEMORY_BARRIER,
         .srcAccessMask = VK_ACCESS_TRANSFER_WRITE_BIT,

@@ -95,5 +95,9 @@ bool host_vk_image_read(host_vk *host, const host_vk_image *image, VkImageLayout
 /* The same the other way round; whatever the image held is gone, and any layout may have been. */
 bool host_vk_image_write(host_vk *host, const host_vk_image *image, VkImageLayout layout,
                          const void *pixels);
+/* Records that everything before is finished and visible, in the other layout, for everything
+ * after. */
+void host_vk_image_layout(VkCommandBuffer commands, const host_vk_image *image, VkImageLayout from,
+                          VkImageLayout to);
 
 #endif

@@ -2,6 +2,7 @@
    sweeps stay within the error that the header states against double precision, and no input,
    however degenerate, gives anything but numbers. */
 #include "core_host.h"
+#include "near.h"
 
 #include <setjmp.h>
 #include <stdarg.h>
@@ -10,14 +11,7 @@
 #include <cmocka.h>
 
 #define PI 3.14159265358979323846
-#define assert_near(a, b, tolerance) near_((double)(a), (double)(b), (tolerance), #a, __LINE__)
 #define ROUNDS 20000
-
-static void near_(double a, double b, double tolerance, const char *what, int line) {
-    if (!(fabs(a - b) <= tolerance)) {
-        fail_msg("line %d: %s is %.9g, not %.9g +- %.3g", line, what, a, b, tolerance);
-    }
-}
 
 static uint32_t seed = 1;
 static float any(double low, double high) {

@@ -2,20 +2,13 @@
    view depth under every projection, a trail's ends move with time without a jump, and no input
    gives anything but numbers. */
 #include "core_host.h"
+#include "near.h"
 
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stdlib.h>
 #include <string.h>
 #include <cmocka.h>
-
-#define assert_near(a, b, tolerance) near_((double)(a), (double)(b), (tolerance), #a, __LINE__)
-
-static void near_(double a, double b, double tolerance, const char *what, int line) {
-    if (!(fabs(a - b) <= tolerance)) {
-        fail_msg("line %d: %s is %.9g, not %.9g +- %.3g", line, what, a, b, tolerance);
-    }
-}
 
 static uint32_t seed = 3;
 static float any(double low, double high) {

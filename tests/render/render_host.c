@@ -390,23 +390,6 @@ static void surface_make_gl(surface *s, float value) {
     free(data);
 }
 
-static void change_layout(VkCommandBuffer commands, const host_vk_image *image, VkImageLayout from,
-                          VkImageLayout to) {
-    VkImageMemoryBarrier barrier;
-    memset(&barrier, 0, sizeof barrier);
-    barrier.sType = VK_STRUCTURE_TYPE_IMAGE_MEMORY_BARRIER;
-    barrier.srcAccessMask = VK_ACCESS_MEMORY_WRITE_BIT;
-    barrier.dstAccessMask = VK_ACCESS_MEMORY_READ_BIT | VK_ACCESS_MEMORY_WRITE_BIT;
-    barrier.oldLayout = from;
-    barrier.newLayout = to;
-    barrier.srcQueueFamilyIndex = barrier.dstQueueFamilyIndex = VK_QUEUE_FAMILY_IGNORED;
-    barrier.image = image->image;
-    barrier.subresourceRange.aspectMask = image->aspect;
-    barrier.subresourceRange.levelCount = barrier.subresourceRange.layerCount = 1;
-    vkCmdPipelineBarrier(commands, VK_PIPELINE_STAGE_ALL_COMMANDS_BIT,
-                         VK_PIPELINE_STAGE_ALL_COMMANDS_BIT, 0, 0, NULL, 0, NULL, 1, &barrier);
-}
-
 static void surface_make_vk(render_device *device, surface *s, float value) {
     VkFormat format = s->format == LAO_FORMAT_RGBA8     ? VK_FORMAT_R8G8B8A8_UNORM
                       : s->format == LAO_FORMAT_RGBA32F ? VK_FORMAT_R32G32B32A32_SFLOAT
@@ -422,14 +405,14 @@ static void surface_make_vk(render_device *device, surface *s, float value) {
     commands = host_vk_begin(device->vk);
     assert_non_null(commands);
     range.aspectMask = s->vk.aspect;
-    change_layout(commands, &s->vk, VK_IMAGE_LAYOUT_UNDEFINED, VK_IMAGE_LAYOUT_GENERAL);
+    host_vk_image_layout(commands, &s->vk, VK_IMAGE_LAYOUT_UNDEFINED, VK_IMAGE_LAYOUT_GENERAL);
     if (s->vk.aspect == VK_IMAGE_ASPECT_COLOR_BIT) {
         vkCmdClearColorImage(commands, s->vk.image, VK_IMAGE_LAYOUT_GENERAL, &color, 1, &range);
     } else {
         vkCmdClearDepthStencilImage(commands, s->vk.image, VK_IMAGE_LAYOUT_GENERAL, &depth, 1,
                                     &range);
     }
-    change_layout(commands, &s->vk, VK_IMAGE_LAYOUT_GENERAL, VK_IMAGE_LAYOUT_GENERAL);
+    host_vk_image_layout(commands, &s->vk, VK_IMAGE_LAYOUT_GENERAL, VK_IMAGE_LAYOUT_GENERAL);
     assert_true(host_vk_submit_and_wait(device->vk, commands));
 }
 

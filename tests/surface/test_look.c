@@ -1,6 +1,7 @@
 /* Proves that the look-up, the opacities, the compositing order, the focus blur and the depth
    shadow of the shared text give what METHODS 9 and 10 state, and finite results for every input.
  */
+#include "near.h"
 #include "surface_host.h"
 
 #include <stdarg.h>
@@ -10,15 +11,11 @@
 #include <string.h>
 #include <cmocka.h>
 
-static void near_to(double a, double b, double tolerance) {
-    if (!(fabs(a - b) <= tolerance))
-        fail_msg("%.17g is not %.17g within %g", a, b, tolerance);
-}
 static void is_color(lao_v4 c, double x, double y, double z, double w) {
-    near_to((double)c.x, x, 1e-6);
-    near_to((double)c.y, y, 1e-6);
-    near_to((double)c.z, z, 1e-6);
-    near_to((double)c.w, w, 1e-6);
+    assert_near((double)c.x, x, 1e-6);
+    assert_near((double)c.y, y, 1e-6);
+    assert_near((double)c.z, z, 1e-6);
+    assert_near((double)c.w, w, 1e-6);
 }
 
 /* CIELab (D65) to sRGB display values, clipped: the anchors of L14. */
@@ -48,8 +45,8 @@ static void anchors_of_the_lookup(void **state) {
     lab(65, -51, -74, cyan);
     is_color(vsf_lookup(0, 1), orange[0], orange[1], orange[2], 1);
     is_color(vsf_lookup(0, -1), cyan[0], cyan[1], cyan[2], 1);
-    near_to((double)vsf_lookup(0, 1).y, 0.4469, 5e-5);
-    near_to((double)vsf_lookup(0, -1).y, 0.7344, 5e-5);
+    assert_near((double)vsf_lookup(0, 1).y, 0.4469, 5e-5);
+    assert_near((double)vsf_lookup(0, -1).y, 0.7344, 5e-5);
     is_color(vsf_lookup(1, 1), 1, 0, 0, 1);
     is_color(vsf_lookup(1, -1), 0, 1, 0, 1);
     for (int i = 0; i <= 10; i++) {
@@ -58,7 +55,7 @@ static void anchors_of_the_lookup(void **state) {
         is_color(vsf_lookup(x, 0), 0, 0, 0, 0);
         is_color(half, 0.5 * (double)whole.x, 0.5 * (double)whole.y, 0.5 * (double)whole.z, 0.5);
         assert_true(whole.x == 1 && whole.z == 0); /* hue falls from orange to red */
-        near_to((double)whole.y, orange[1] * (1 - (double)x), 1e-6);
+        assert_near((double)whole.y, orange[1] * (1 - (double)x), 1e-6);
     }
 }
 
@@ -101,7 +98,7 @@ static void colours_of_a_map(void **state) {
     (void)state;
     for (int i = 0; i < 256; i++) {
         place = vsf_map_place((float)i / 255, 256);
-        near_to((double)(place.x + place.y), i, 1e-4);
+        assert_near((double)(place.x + place.y), i, 1e-4);
         assert_true(place.y >= 0 && place.y <= 254 && place.y == floorf(place.y));
     }
     place = vsf_map_place(7, 256);
@@ -121,14 +118,14 @@ static void opacities_of_the_baselines(void **state) {
     (void)state;
     assert_true(vsf_fresnel(1, 1.5f) == 0 && vsf_fresnel(-1, 1.5f) == 0);
     assert_true(vsf_fresnel(0, 1.5f) == 1);
-    near_to((double)vsf_fresnel(0.25f, 1.5f), 0.875, 1e-6);
-    near_to((double)vsf_fresnel(0.5f, 1), 0.5, 1e-6);
+    assert_near((double)vsf_fresnel(0.25f, 1.5f), 0.875, 1e-6);
+    assert_near((double)vsf_fresnel(0.5f, 1), 0.5, 1e-6);
     for (int i = 1; i < 20; i++) { /* a larger fall-off occludes more; the other form less */
         float c = (float)i / 20;
         assert_true(vsf_fresnel(c, 2) > vsf_fresnel(c, 1));
         assert_true(vsf_fresnel_rim(c, 2) < vsf_fresnel_rim(c, 1));
-        near_to((double)vsf_fresnel(c, 1.5f), 1 - pow((double)c, 1.5), 2e-6);
-        near_to((double)vsf_fresnel_rim(c, 1.5f), pow(1 - (double)c, 1.5), 2e-6);
+        assert_near((double)vsf_fresnel(c, 1.5f), 1 - pow((double)c, 1.5), 2e-6);
+        assert_near((double)vsf_fresnel_rim(c, 1.5f), pow(1 - (double)c, 1.5), 2e-6);
     }
     assert_true(vsf_fresnel_rim(1, 2) == 0 && vsf_fresnel_rim(0, 2) == 1);
     assert_true(vsf_fresnel(1.5f, 2) == 0); /* not quite unit vectors */
@@ -163,8 +160,8 @@ static void layers_compose_front_to_back(void **state) {
         }
         for (int k = 7; k >= 0; k--) /* peeled: front to back */
             sum = vsf_over(sum, layers[k]);
-        near_to((double)sum.x, r, 2e-6);
-        near_to((double)sum.w, a, 2e-6);
+        assert_near((double)sum.x, r, 2e-6);
+        assert_near((double)sum.w, a, 2e-6);
     }
 }
 
@@ -195,13 +192,13 @@ static void focus_blur(void **state) {
     assert_true(vsf_blur_sigma(1000, 0.2f, 8) == 8);
     assert_true(vsf_gauss(0, 0) == 1 && vsf_gauss(1, 0) == 0 && vsf_gauss(1e30f, 1) == 0);
     for (int i = 0; i < 60; i++)
-        near_to((double)vsf_gauss((float)i, 2), exp(-i / 8.0), 1e-6);
+        assert_near((double)vsf_gauss((float)i, 2), exp(-i / 8.0), 1e-6);
     for (int i = 0; i < 101; i++) { /* a constant picture stays */
         row[i].color = 0.7f;
         row[i].z = (float)(i % 37) * 4;
     }
     for (int i = 0; i < 101; i++)
-        near_to((double)blurred(row, 101, i, 40, 60), 0.7, 1e-6);
+        assert_near((double)blurred(row, 101, i, 40, 60), 0.7, 1e-6);
     for (int i = 0; i < 101; i++) /* in focus nothing changes */
         row[i].color = (float)(i % 2);
     for (int i = 0; i < 101; i++) {
@@ -231,7 +228,7 @@ static void focus_blur(void **state) {
             want += w * (i + j < 50);
             weights += w;
         }
-        near_to((double)blurred(row, 101, i, 40, 60), want / weights, 1e-5);
+        assert_near((double)blurred(row, 101, i, 40, 60), want / weights, 1e-5);
     }
 }
 
@@ -253,9 +250,9 @@ static void unsharp_shadow(void **state) {
         blur /= weights;
         want = x >= 0 ? -0.5 * erfc((x + 0.5) / (sigma * sqrt(2.0))) : 0;
         out = vsf_unsharp(c, (float)depth, (float)blur, 1);
-        near_to((double)out.x, 0.9 + want, 2e-3);
-        near_to((double)out.y, fmax(0.5 + want, 0), 2e-3);
-        near_to((double)out.z, fmax(0.1 + want, 0), 2e-3);
+        assert_near((double)out.x, 0.9 + want, 2e-3);
+        assert_near((double)out.y, fmax(0.5 + want, 0), 2e-3);
+        assert_near((double)out.z, fmax(0.1 + want, 0), 2e-3);
     }
 }
 

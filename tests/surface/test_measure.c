@@ -2,6 +2,7 @@
    sine of the angle to the view, on spheres, cylinders, tori, saddles and planes, for both kinds of
    camera; that the buffers' gradient is that of L14's formulas; and that principal curvatures and
    feature lines are where geometry puts them. */
+#include "near.h"
 #include "surface_host.h"
 
 #include <stdarg.h>
@@ -10,11 +11,6 @@
 #include <stdlib.h>
 #include <string.h>
 #include <cmocka.h>
-
-static void near_to(double a, double b, double tolerance) {
-    if (!(fabs(a - b) <= tolerance))
-        fail_msg("%.17g is not %.17g within %g", a, b, tolerance);
-}
 
 static double dot(const float *a, const double *b) {
     return (double)a[0] * b[0] + (double)a[1] * b[1] + (double)a[2] * b[2];
@@ -94,7 +90,7 @@ static void spheres(void **state) {
     }
     /* the naive view vectors are biased up to 0.084, and agree for an orthographic camera */
     on_a_sphere(&exact, eyes[0], 2, VSF_VIEW_NORMALIZED, &naive, &mean);
-    near_to(naive, 0.084, 5e-3);
+    assert_near(naive, 0.084, 5e-3);
     on_a_sphere(&exact, eyes[2], 2, VSF_VIEW_NORMALIZED, &naive, &mean);
     assert_true(naive <= 3e-3);
     fixture_free(&exact);
@@ -122,7 +118,7 @@ static void planes(void **state) {
     for (int i = 0; i < 2; i++) {
         measure(&f, eyes[i], 0);
         for (uint32_t v = 0; v < f.shape.vertex_count; v++)
-            near_to((double)f.s[v], 0, 2e-7); /* n.v itself is rounded */
+            assert_near((double)f.s[v], 0, 2e-7); /* n.v itself is rounded */
     }
     fixture_free(&f);
 }
@@ -140,7 +136,7 @@ static void cylinders(void **state) {
             const float *n = f.shape.normals + 3 * v;
             double around = -(double)n[1] * (double)eye[0] + (double)n[0] * (double)eye[1];
             if (!f.mesh.borders[v])
-                near_to((double)f.s[v], around * around / 2, 1.5e-3);
+                assert_near((double)f.s[v], around * around / 2, 1.5e-3);
         }
     }
     fixture_free(&f);
@@ -164,7 +160,7 @@ static void tori(void **state) {
             a = w[0] * around[0] + w[1] * around[1];
             b = length2(w) - a * a;
             want = (a * a * cosine / ring + b / 2) / length2(view);
-            near_to((double)f.s[v], want, 2e-3);
+            assert_near((double)f.s[v], want, 2e-3);
             negative += f.s[v] < 0;
         }
     }
@@ -188,7 +184,7 @@ static void saddles(void **state) {
         double want = -2 * a * (a * y) * (a * x) / (g * g * sqrt(g));
         if (f.mesh.borders[v])
             continue;
-        near_to((double)f.s[v], want, 1e-4);
+        assert_near((double)f.s[v], want, 1e-4);
         if (fabs(x * y) > 0.5) /* changes sign across the asymptotic directions, the axes */
             assert_true((f.s[v] > 0) == (x * y < 0));
         signs[f.s[v] > 0]++;
@@ -266,7 +262,7 @@ static void rings_are_the_printed_formulas(void **state) {
             measure(&f, eyes[i], 0);
             literal_measure(&f.mesh, eyes[i], want);
             for (uint32_t v = 0; v < f.mesh.vertex_count; v++)
-                near_to((double)f.s[v], want[v], 5e-6 * (1 + fabs(want[v])));
+                assert_near((double)f.s[v], want[v], 5e-6 * (1 + fabs(want[v])));
         }
         /* each neighbour once: 2 edges' ends, and every entry names one */
         assert_int_equal(f.buffers.ring_count, 2 * f.mesh.info.edges);
@@ -295,9 +291,9 @@ static void gradients_of_linear_functions(void **state) {
         values[v] = 2 * f.shape.positions[3 * v] - 3 * f.shape.positions[3 * v + 1] + 1;
     assert_int_equal(vsf_gradients(NULL, &f.buffers, values, g), LAO_OK);
     for (uint32_t v = 0; v < 900; v++) {
-        near_to((double)g[3 * v], 2, 2e-5);
-        near_to((double)g[3 * v + 1], -3, 2e-5);
-        near_to((double)g[3 * v + 2], 0, 1e-6);
+        assert_near((double)g[3 * v], 2, 2e-5);
+        assert_near((double)g[3 * v + 1], -3, 2e-5);
+        assert_near((double)g[3 * v + 2], 0, 1e-6);
     }
     fixture_free(&f);
 }
@@ -334,8 +330,8 @@ static void moves_and_scales(void **state) {
         measure(&scaled, far_eye, 0);
     }
     for (uint32_t v = 0; v < f.mesh.vertex_count; v++) {
-        near_to((double)moved.s[v], (double)f.s[v], 1e-5);
-        near_to(4 * (double)scaled.s[v], (double)f.s[v], 1e-6); /* 1 / length */
+        assert_near((double)moved.s[v], (double)f.s[v], 1e-5);
+        assert_near(4 * (double)scaled.s[v], (double)f.s[v], 1e-6); /* 1 / length */
     }
     fixture_free(&f);
     fixture_free(&moved);
@@ -359,10 +355,10 @@ static void eyes_of_cameras(void **state) {
     assert_true(fabsf(back.x) < 1e-5f && fabsf(back.y) < 1e-5f && fabsf(back.z) < 1e-5f);
     eye = vsf_eye(m, 1.0f);
     assert_true(eye.w == 0.0f);
-    near_to((double)(eye.x * eye.x + eye.y * eye.y + eye.z * eye.z), 1, 1e-6);
+    assert_near((double)(eye.x * eye.x + eye.y * eye.y + eye.z * eye.z), 1, 1e-6);
     m.w = lao_v4_make(0, 0, 0, 1); /* moving towards the eye raises z */
     back = lao_transform(m, lao_v3_make(eye.x, eye.y, eye.z));
-    near_to((double)back.z, 2, 1e-6);
+    assert_near((double)back.z, 2, 1e-6);
 }
 
 static void degenerate_eyes_and_vertices(void **state) {
@@ -415,7 +411,7 @@ static void buffers_describe_an_object(void **state) {
     for (uint32_t t = 0; t < 3600; t++)
         for (uint32_t k = 0; k < 3; k++)
             assert_int_equal((uint32_t)f.buffers.triangles[4 * t + k], f.mesh.triangles[3 * t + k]);
-    near_to((double)desc.bounds[1][0], 7, 1e-5);
+    assert_near((double)desc.bounds[1][0], 7, 1e-5);
     fixture_free(&f);
 }
 
@@ -462,18 +458,18 @@ static void curvatures_of_known_shapes(void **state) {
     (void)state;
     assert_int_equal(vsf_curvatures(NULL, &sphere.mesh, k, NULL), LAO_OK);
     for (uint32_t v = 0; v < 2 * sphere.mesh.vertex_count; v++)
-        near_to((double)k[v], 0.5, 2e-3);
+        assert_near((double)k[v], 0.5, 2e-3);
     assert_int_equal(vsf_curvatures(NULL, &torus.mesh, k, d), LAO_OK);
     for (uint32_t v = 0; v < torus.mesh.vertex_count; v++) {
         const float *p = torus.shape.positions + 3 * v;
         double ring = sqrt((double)(p[0] * p[0] + p[1] * p[1]));
         double around[3] = {-(double)p[1] / ring, (double)p[0] / ring, 0};
-        near_to((double)k[2 * v], 0.5, 2e-3);
-        near_to((double)k[2 * v + 1], (ring - 5) / 2 / ring, 2e-3);
-        near_to(dot(d + 3 * v, around), 0, 2e-3); /* the first runs around the tube */
-        near_to((double)(d[3 * v] * d[3 * v] + d[3 * v + 1] * d[3 * v + 1] +
-                         d[3 * v + 2] * d[3 * v + 2]),
-                1, 1e-6);
+        assert_near((double)k[2 * v], 0.5, 2e-3);
+        assert_near((double)k[2 * v + 1], (ring - 5) / 2 / ring, 2e-3);
+        assert_near(dot(d + 3 * v, around), 0, 2e-3); /* the first runs around the tube */
+        assert_near((double)(d[3 * v] * d[3 * v] + d[3 * v + 1] * d[3 * v + 1] +
+                             d[3 * v + 2] * d[3 * v + 2]),
+                    1, 1e-6);
     }
     assert_int_equal(vsf_curvatures(NULL, &saddle.mesh, k, d), LAO_OK);
     for (uint32_t v = 0; v < saddle.mesh.vertex_count; v++) {
@@ -482,8 +478,8 @@ static void curvatures_of_known_shapes(void **state) {
         double gauss = -a * a / (g * g), mean = a * a * a * x * y / (g * sqrt(g)); /* outward: + */
         if (saddle.mesh.borders[v])
             continue;
-        near_to((double)k[2 * v] * (double)k[2 * v + 1], gauss, 2e-4);
-        near_to(0.5 * ((double)k[2 * v] + (double)k[2 * v + 1]), mean, 2e-4);
+        assert_near((double)k[2 * v] * (double)k[2 * v + 1], gauss, 2e-4);
+        assert_near(0.5 * ((double)k[2 * v] + (double)k[2 * v + 1]), mean, 2e-4);
     }
     free(k);
     free(d);
@@ -507,14 +503,14 @@ static void contours_of_a_sphere(void **state) {
     assert_memory_equal(lines.points, lines.points + 3 * (lines.point_count - 1), 12);
     for (uint32_t i = 0; i < lines.point_count; i++) {
         const float *p = lines.points + 3 * i;
-        near_to((double)p[2], 0, 1e-6);
-        near_to(sqrt((double)(p[0] * p[0] + p[1] * p[1])), 2, 5e-3);
+        assert_near((double)p[2], 0, 1e-6);
+        assert_near(sqrt((double)(p[0] * p[0] + p[1] * p[1])), 2, 5e-3);
     }
     vsf_polylines_free(&lines);
     assert_int_equal(vsf_feature_lines(NULL, &f.mesh, &f.buffers, close, VSF_CONTOURS, 0, &lines),
                      LAO_OK);
     for (uint32_t i = 0; i < lines.point_count; i++) /* n.(c - p) = 0: z = R^2 / 4 */
-        near_to((double)lines.points[3 * i + 2], 1, 2e-3);
+        assert_near((double)lines.points[3 * i + 2], 1, 2e-3);
     vsf_polylines_free(&lines);
     assert_int_equal(
         vsf_feature_lines(NULL, &f.mesh, &f.buffers, eye, VSF_SUGGESTIVE_CONTOURS, 0, &lines),
@@ -571,14 +567,14 @@ static void suggestive_contours_of_a_torus(void **state) {
             double p[3], q[3], w[3], facing, slope, length;
             for (uint32_t k = 0; k < 3; k++)
                 p[k] = (double)lines.points[3 * j + k];
-            near_to(torus_measure(p, view, &facing, w), 0, 2e-3);
+            assert_near(torus_measure(p, view, &facing, w), 0, 2e-3);
             assert_true(facing > -1e-3);
             length = sqrt(length2(w));
             for (int k = 0; k < 3; k++)
                 q[k] = p[k] + 1e-4 * w[k] / length;
             slope = -torus_measure(p, view, &facing, w);
             slope += torus_measure(q, view, &facing, w);
-            near_to((double)lines.values[j], slope / 1e-4, 8e-4);
+            assert_near((double)lines.values[j], slope / 1e-4, 8e-4);
             assert_true(lines.values[j] >= threshold - 1e-6f);
         }
         for (uint32_t j = 0; j < lines.line_count; j++) {

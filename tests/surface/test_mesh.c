@@ -1,6 +1,7 @@
 /* Proves that a mesh of arrays is welded, cleaned, turned outward and named where it is odd, that
    its areas, normals and rings are those of its triangles, and that smoothing and subdivision do
    what their formulas say. */
+#include "near.h"
 #include "surface_host.h"
 
 #include <stdarg.h>
@@ -9,11 +10,6 @@
 #include <stdlib.h>
 #include <string.h>
 #include <cmocka.h>
-
-static void near_to(double a, double b, double tolerance) {
-    if (!(fabs(a - b) <= tolerance))
-        fail_msg("%.17g is not %.17g within %g", a, b, tolerance);
-}
 
 /* ---- triangles */
 
@@ -55,7 +51,7 @@ static void gradients_of_linear_functions(void **state) {
             nn += n[k] * n[k];
         }
         for (int k = 0; k < 3; k++)
-            near_to(g[k], a[k] - n[k] * an / nn, 1e-9);
+            assert_near(g[k], a[k] - n[k] * an / nn, 1e-9);
     }
 }
 
@@ -67,15 +63,15 @@ static void mixed_areas(void **state) {
     (void)state;
     vsf_corner_areas(o, x, top, a); /* equilateral: a third each */
     for (int k = 0; k < 3; k++)
-        near_to(a[k], sqrt(0.75) / 6, 1e-15);
+        assert_near(a[k], sqrt(0.75) / 6, 1e-15);
     vsf_corner_areas(o, x, y, a); /* right angle: the limit of Voronoi areas */
-    near_to(a[0], 0.25, 1e-15);
-    near_to(a[1], 0.125, 1e-15);
-    near_to(a[2], 0.125, 1e-15);
+    assert_near(a[0], 0.25, 1e-15);
+    assert_near(a[1], 0.125, 1e-15);
+    assert_near(a[2], 0.125, 1e-15);
     vsf_corner_areas(x, low, o, a); /* obtuse at its second corner */
-    near_to(a[0], 0.05 / 4, 1e-15);
-    near_to(a[1], 0.05 / 2, 1e-15);
-    near_to(a[2], 0.05 / 4, 1e-15);
+    assert_near(a[0], 0.05 / 4, 1e-15);
+    assert_near(a[1], 0.05 / 2, 1e-15);
+    assert_near(a[2], 0.05 / 4, 1e-15);
     vsf_corner_areas(o, x, x, a);
     assert_true(a[0] == 0 && a[1] == 0 && a[2] == 0);
     for (int i = 0; i < 100000; i++) {
@@ -92,7 +88,7 @@ static void mixed_areas(void **state) {
         area = 0.5 * sqrt(c[0] * c[0] + c[1] * c[1] + c[2] * c[2]);
         vsf_corner_areas(p[0], p[1], p[2], a);
         assert_true(a[0] >= 0 && a[1] >= 0 && a[2] >= 0);
-        near_to(a[0] + a[1] + a[2], area, 1e-12);
+        assert_near(a[0] + a[1] + a[2], area, 1e-12);
     }
 }
 
@@ -114,7 +110,7 @@ static void least_turns(void **state) {
         }
         assert_int_equal(vsf_turn(a, b, a, t), 0);
         for (int k = 0; k < 3; k++)
-            near_to(t[k], b[k], 1e-9); /* from becomes to */
+            assert_near(t[k], b[k], 1e-9); /* from becomes to */
         assert_int_equal(vsf_turn(a, b, v, t), 0);
         for (int k = 0; k < 3; k++) {
             va += v[k] * a[k];
@@ -122,11 +118,11 @@ static void least_turns(void **state) {
             vv += v[k] * v[k];
             tt += t[k] * t[k];
         }
-        near_to(va, tb, 1e-9); /* angles and lengths stay */
-        near_to(vv, tt, 1e-9);
+        assert_near(va, tb, 1e-9); /* angles and lengths stay */
+        assert_near(vv, tt, 1e-9);
         assert_int_equal(vsf_turn(a, a, v, t), 0);
         for (int k = 0; k < 3; k++)
-            near_to(t[k], v[k], 1e-12);
+            assert_near(t[k], v[k], 1e-12);
         for (int k = 0; k < 3; k++)
             b[k] = -a[k];
         assert_int_equal(vsf_turn(a, b, v, t), -1);
@@ -157,7 +153,7 @@ static void check_topology(const vsf_mesh *mesh) {
         area += mesh->areas[v];
     }
     assert_int_equal(mesh->ring_starts[mesh->vertex_count], 3 * mesh->triangle_count);
-    near_to(area / mesh->info.area, 1, 1e-12);
+    assert_near(area / mesh->info.area, 1, 1e-12);
 }
 
 static void welds_what_is_in_one_place(void **state) {
@@ -199,11 +195,11 @@ static void welds_what_is_in_one_place(void **state) {
     for (uint32_t v = 1; v < mesh.vertex_count; v++) /* the desc's order */
         assert_true(mesh.vertex_sources[v] > mesh.vertex_sources[v - 1]);
     check_topology(&mesh);
-    near_to(mesh.info.area / (4 * 3.14159265 * 4), 1, 0.01);
-    near_to(mesh.info.volume / (4.0 / 3 * 3.14159265 * 8), 1, 0.02);
+    assert_near(mesh.info.area / (4 * 3.14159265 * 4), 1, 0.01);
+    assert_near(mesh.info.volume / (4.0 / 3 * 3.14159265 * 8), 1, 0.02);
     for (uint32_t v = 0; v < mesh.vertex_count; v++) { /* normals point outward */
         const float *p = mesh.positions + 3 * v, *q = mesh.normals + 3 * v;
-        near_to((double)(p[0] * q[0] + p[1] * q[1] + p[2] * q[2]), 2, 2e-3);
+        assert_near((double)(p[0] * q[0] + p[1] * q[1] + p[2] * q[2]), 2, 2e-3);
     }
     vsf_mesh_free(&mesh);
     desc.flags = VSF_MESH_NO_WELD;
@@ -242,7 +238,7 @@ static void turns_what_runs_the_wrong_way(void **state) {
     assert_int_equal(host.seen[VSF_LOG_WINDING_MENDED], 1);
     assert_int_equal(host.seen[VSF_LOG_PARTS_INWARD], 0);
     assert_memory_equal(mesh.normals, right.normals, 12 * right.vertex_count);
-    near_to(mesh.info.volume, right.info.volume, 1e-6);
+    assert_near(mesh.info.volume, right.info.volume, 1e-6);
     check_topology(&mesh);
     vsf_mesh_free(&mesh);
     desc.flags = VSF_MESH_KEEP_WINDING; /* named only */
@@ -267,11 +263,11 @@ static void turns_what_runs_the_wrong_way(void **state) {
     vsf_mesh_free(&mesh);
     desc.flags = VSF_MESH_KEEP_WINDING;
     assert_int_equal(vsf_mesh_build(&h, &desc, &mesh), LAO_OK);
-    near_to(mesh.info.volume, -right.info.volume, 1e-6);
+    assert_near(mesh.info.volume, -right.info.volume, 1e-6);
     vsf_mesh_free(&mesh);
     desc.flags = VSF_MESH_FLIP;
     assert_int_equal(vsf_mesh_build(&h, &desc, &mesh), LAO_OK);
-    near_to(mesh.info.volume, -right.info.volume, 1e-6);
+    assert_near(mesh.info.volume, -right.info.volume, 1e-6);
     check_topology(&mesh);
     vsf_mesh_free(&mesh);
     vsf_mesh_free(&right);
@@ -418,7 +414,7 @@ static void smoothing_has_its_transfer(void **state) {
         desc.uniform = uniform;
         assert_int_equal(vsf_mesh_smooth(NULL, &mesh, &desc), LAO_OK);
         for (uint32_t i = 0; i < 36; i++)
-            near_to((double)mesh.positions[i], factor * (double)shape.positions[i], 5e-6);
+            assert_near((double)mesh.positions[i], factor * (double)shape.positions[i], 5e-6);
         vsf_mesh_free(&mesh);
         /* at the pass band's edge nothing changes: (1 - lambda k)(1 - mu k) = 1 */
         mesh = surface_build(&shape, 0, 0);
@@ -427,7 +423,7 @@ static void smoothing_has_its_transfer(void **state) {
         desc.steps = 50;
         assert_int_equal(vsf_mesh_smooth(NULL, &mesh, &desc), LAO_OK);
         for (uint32_t i = 0; i < 36; i++)
-            near_to((double)mesh.positions[i], (double)shape.positions[i], 5e-6);
+            assert_near((double)mesh.positions[i], (double)shape.positions[i], 5e-6);
         vsf_mesh_free(&mesh);
     }
     surface_shape_free(&shape);
@@ -526,7 +522,7 @@ static void smoothing_takes_no_negative_weight(void **state) {
     assert_int_equal(vsf_mesh_build(NULL, &desc, &mesh), LAO_OK);
     assert_int_equal(vsf_mesh_smooth(NULL, &mesh, &once), LAO_OK);
     for (int k = 0; k < 3; k++)
-        near_to((double)mesh.positions[k], want[k], 1e-6);
+        assert_near((double)mesh.positions[k], want[k], 1e-6);
     vsf_mesh_free(&mesh);
 }
 
@@ -575,7 +571,7 @@ static void subdivision_is_loops(void **state) {
         /* valence 5: p (1 - 5 b) + b sum of neighbours, b = 3 / 40, their sum is sqrt(5) p */
         double f = 1 - 0.375 + 0.375 / 5 * sqrt(5.0);
         for (uint32_t i = 0; i < 36; i++)
-            near_to((double)finer.positions[i], f * (double)ico.positions[i], 2e-7);
+            assert_near((double)finer.positions[i], f * (double)ico.positions[i], 2e-7);
     }
     vsf_mesh_free(&finer);
     vsf_mesh_free(&mesh);
@@ -591,7 +587,8 @@ static void subdivision_is_loops(void **state) {
     for (uint32_t v = 0; v < finer.vertex_count; v++) {
         assert_true(finer.positions[3 * v + 2] == 0);
         if (!finer.borders[v]) /* regular: linear functions are reproduced inside */
-            near_to((double)finer.positions[3 * v], (double)finer.attributes[0].values[v], 0.26);
+            assert_near((double)finer.positions[3 * v], (double)finer.attributes[0].values[v],
+                        0.26);
     }
     /* the box but for the rounded corners */
     assert_true(finer.info.bounds[0][0] == mesh.info.bounds[0][0]);

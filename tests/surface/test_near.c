@@ -1,6 +1,7 @@
 /* Proves that distances to the lit parts of pathlines are those of brute force, to the bit, for
    every storage, clock and order of work; that what is lit follows L14's highlight; and that gamma
    is the 1 % quantile of all of them. */
+#include "near.h"
 #include "surface_host.h"
 
 #include <stdarg.h>
@@ -9,11 +10,6 @@
 #include <stdlib.h>
 #include <string.h>
 #include <cmocka.h>
-
-static void near_to(double a, double b, double tolerance) {
-    if (!(fabs(a - b) <= tolerance))
-        fail_msg("%.17g is not %.17g within %g", a, b, tolerance);
-}
 
 /* A line along x from 0 to 10 mm in 10 ms; p 2 mm above its middle. */
 static vsf_near_desc straight(const float *positions, uint32_t count) {
@@ -37,56 +33,56 @@ static void oracles_of_a_straight_line(void **state) {
     float d[2], part, texels[4];
     (void)state;
     assert_int_equal(vsf_near_make(NULL, &desc, &n), LAO_OK);
-    near_to(n.reach, 1, 1e-12);
+    assert_near(n.reach, 1, 1e-12);
     assert_true(n.duration == 10);
     vsf_near_step(&n, 5, d); /* x in [4, 6] is lit */
     assert_true(d[0] == 2);
-    near_to((double)d[1], 14, 1e-6);
+    assert_near((double)d[1], 14, 1e-6);
     vsf_near_step(&n, 9, d); /* [8, 10] */
-    near_to((double)d[0], 3.605551, 1e-6);
-    near_to((double)d[1], 10, 1e-6);
+    assert_near((double)d[0], 3.605551, 1e-6);
+    assert_near((double)d[1], 10, 1e-6);
     vsf_near_step(&n, 0, d); /* [0, 1] */
-    near_to((double)d[0], sqrt(16 + 4), 1e-6);
+    assert_near((double)d[0], sqrt(16 + 4), 1e-6);
     assert_int_equal(vsf_near_find(&n, 5.5, &part), 5);
-    near_to((double)part, 0.5, 1e-6);
+    assert_near((double)part, 0.5, 1e-6);
     vsf_near_sample(&n, 8.5, d);
-    near_to((double)d[0], 0.5 * (sqrt(4 + 4) + sqrt(9 + 4)), 1e-6);
+    assert_near((double)d[0], 0.5 * (sqrt(4 + 4) + sqrt(9 + 4)), 1e-6);
     assert_int_equal(vsf_near_find(&n, 99, &part), 9);
     assert_true(part == 1);
     vsf_near_sample(&n, 99, d);
-    near_to((double)d[0], sqrt(16 + 4), 1e-6); /* [9, 10] */
+    assert_near((double)d[0], sqrt(16 + 4), 1e-6); /* [9, 10] */
     vsf_near_sample(&n, -5, d);
-    near_to((double)d[0], sqrt(16 + 4), 1e-6);
+    assert_near((double)d[0], sqrt(16 + 4), 1e-6);
     assert_int_equal(vsf_near_find(&n, NAN, &part), 0);
     vsf_near_pair(&n, 8, texels);
-    near_to((double)texels[0], sqrt(4 + 4), 1e-6);
-    near_to((double)texels[1], sqrt(9 + 4), 1e-6);
+    assert_near((double)texels[0], sqrt(4 + 4), 1e-6);
+    assert_near((double)texels[1], sqrt(9 + 4), 1e-6);
     vsf_near_pair(&n, 10, texels); /* the last with itself */
     assert_true(texels[0] == texels[1]);
     assert_int_equal(vsf_near_exact(NULL, &n, 8.5, d), LAO_OK); /* [7.5, 9.5] */
-    near_to((double)d[0], sqrt(2.5 * 2.5 + 4), 1e-6);
+    assert_near((double)d[0], sqrt(2.5 * 2.5 + 4), 1e-6);
     vsf_near_free(&n);
     desc.period = 10; /* times count modulo it: x in [9, 10] and [0, 1] are lit at 0 and 10 */
     assert_int_equal(vsf_near_make(NULL, &desc, &n), LAO_OK);
     vsf_near_step(&n, 0, d);
-    near_to((double)d[0], sqrt(16 + 4), 1e-6);
-    near_to((double)d[1], 10, 1e-6);
+    assert_near((double)d[0], sqrt(16 + 4), 1e-6);
+    assert_near((double)d[1], 10, 1e-6);
     for (int turn = -3; turn < 4; turn++) {
         assert_int_equal(vsf_near_find(&n, 8.5 + 10 * turn, &part), 8);
-        near_to((double)part, 0.5, 1e-6);
+        assert_near((double)part, 0.5, 1e-6);
         assert_int_equal(vsf_near_exact(NULL, &n, 8.5 + 10 * turn, d), LAO_OK);
-        near_to((double)d[0], sqrt(2.5 * 2.5 + 4), 1e-6);
+        assert_near((double)d[0], sqrt(2.5 * 2.5 + 4), 1e-6);
     }
     vsf_near_free(&n);
     desc.period = 0;
     desc.flags = VSF_NEAR_POINTS; /* the two points alone */
     assert_int_equal(vsf_near_make(NULL, &desc, &n), LAO_OK);
     vsf_near_step(&n, 0, d);
-    near_to((double)d[0], sqrt(25 + 4), 1e-6);
+    assert_near((double)d[0], sqrt(25 + 4), 1e-6);
     vsf_near_step(&n, 1, d); /* |T - t| = reach is not lit any more */
     assert_true(d[0] == VSF_FAR);
     vsf_near_step(&n, 10, d);
-    near_to((double)d[1], 10, 1e-6);
+    assert_near((double)d[1], 10, 1e-6);
     vsf_near_free(&n);
 }
 
@@ -109,13 +105,13 @@ static void beta_is_twice_the_median(void **state) {
     desc.times = times;
     assert_int_equal(vsf_near_make(NULL, &desc, &n), LAO_OK);
     assert_true(n.beta == 1100 && n.duration == 900 && n.step_count == 100);
-    near_to(n.sigma, sqrt(550.0), 1e-12);
+    assert_near(n.sigma, sqrt(550.0), 1e-12);
     vsf_near_free(&n);
     desc.line_count = 3; /* odd: the middle one, here of 100, 300, 800 */
     desc.point_count = 5;
     assert_int_equal(vsf_near_make(NULL, &desc, &n), LAO_OK);
     assert_true(n.beta == 600 && n.duration == 800);
-    near_to(n.reach, 1.17741 * sqrt(600.0), 1e-4);
+    assert_near(n.reach, 1.17741 * sqrt(600.0), 1e-4);
     vsf_near_free(&n);
     desc.line_count = 0;
     desc.point_count = 0; /* nothing at all */
@@ -253,7 +249,7 @@ static void agrees_with_brute_force(void **state) {
                     if (want > 1e10)
                         assert_true(d[v] == VSF_FAR);
                     else
-                        near_to((double)d[v] / want, 1, 1e-7);
+                        assert_near((double)d[v] / want, 1, 1e-7);
                 }
             }
             vsf_near_free(&fast);
@@ -399,7 +395,7 @@ static void halves_are_near(void **state) {
             if (a[v] == VSF_FAR || b[v] == VSF_FAR)
                 assert_true(a[v] == b[v]);
             else
-                near_to((double)b[v], fmin((double)a[v], 65504), (double)a[v] / 2048 + 3e-8);
+                assert_near((double)b[v], fmin((double)a[v], 65504), (double)a[v] / 2048 + 3e-8);
         }
     }
     vsf_near_free(&whole);

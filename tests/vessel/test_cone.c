@@ -2,6 +2,7 @@
    equal brute force over the family of balls in double precision, inside and outside, the distance
    is 1-Lipschitz and does not care which end comes first, and no input gives anything but numbers.
  */
+#include "near.h"
 #include "vessel_host.h"
 
 #include <math.h>
@@ -11,11 +12,6 @@
 #include <stdlib.h>
 #include <cmocka.h>
 
-#define assert_near(a, b, tolerance) near_((double)(a), (double)(b), (tolerance), #a, __LINE__)
-static void near_(double a, double b, double tolerance, const char *what, int line) {
-    if (!(fabs(a - b) <= tolerance))
-        fail_msg("line %d: %s is %.9g, not %.9g +- %.3g", line, what, a, b, tolerance);
-}
 static lao_v3 v3(double x, double y, double z) {
     return lao_v3_make((float)x, (float)y, (float)z);
 }

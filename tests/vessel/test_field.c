@@ -1,6 +1,7 @@
 /* What the field gives for free is right: outlines and shadows follow METHODS.md 5.4, Boolean
    operations follow brute force, light and openness follow geometry, and distances of balls, paths
    and surfaces to round cones are exact. */
+#include "near.h"
 #include "vessel_host.h"
 
 #include <math.h>
@@ -12,11 +13,6 @@
 #include <time.h>
 #include <cmocka.h>
 
-#define assert_near(a, b, tolerance) near_((double)(a), (double)(b), (tolerance), #a, __LINE__)
-static void near_(double a, double b, double tolerance, const char *what, int line) {
-    if (!(fabs(a - b) <= tolerance))
-        fail_msg("line %d: %s is %.9g, not %.9g +- %.3g", line, what, a, b, tolerance);
-}
 static lao_v3 v3(double x, double y, double z) {
     return lao_v3_make((float)x, (float)y, (float)z);
 }

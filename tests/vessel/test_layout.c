@@ -1,6 +1,7 @@
 /* The reduced tree is binary with the ids that DESIGN.md 10 asks for; the layout is Algorithm 1 of
    L19 with the oracles of METHODS.md 8, for any tree, weight and size, fast; JSON and SVG say what
    it is, and as a tree in a plane it has every node on its edge, by its way along the vessel. */
+#include "near.h"
 #include "vessel_host.h"
 
 #include <math.h>
@@ -11,12 +12,6 @@
 #include <string.h>
 #include <time.h>
 #include <cmocka.h>
-
-#define assert_near(a, b, tolerance) near_((double)(a), (double)(b), (tolerance), #a, __LINE__)
-static void near_(double a, double b, double tolerance, const char *what, int line) {
-    if (!(fabs(a - b) <= tolerance))
-        fail_msg("line %d: %s is %.9g, not %.9g", line, what, a, b);
-}
 
 typedef struct case_ {
     sdv_tree tree;

@@ -1,6 +1,7 @@
 /* Pull-push fills an image as METHODS.md 6 says: its seven oracles hold for any size, channel
    count, exponent and stencil; weights end at exactly 1; it commutes with affine maps of the
    values; the order of rows does not matter; nothing leaks. */
+#include "near.h"
 #include "vessel_host.h"
 
 #include <math.h>
@@ -10,12 +11,6 @@
 #include <stdlib.h>
 #include <string.h>
 #include <cmocka.h>
-
-#define assert_near(a, b, tolerance) near_((double)(a), (double)(b), (tolerance), #a, __LINE__)
-static void near_(double a, double b, double tolerance, const char *what, int line) {
-    if (!(fabs(a - b) <= tolerance))
-        fail_msg("line %d: %s is %.9g, not %.9g +- %.3g", line, what, a, b, tolerance);
-}
 
 enum { SIDE = 80, CHANNELS = 6 };
 static float values[SIDE * SIDE * CHANNELS], weights[SIDE * SIDE];

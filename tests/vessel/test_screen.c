@@ -1,5 +1,6 @@
 /* The void behind vessels, the guiding field, the parameterization and its ink are what METHODS.md
    6 and 7 say: their oracles hold for the shared functions and for whole images made in C. */
+#include "near.h"
 #include "screen_passes.h"
 #include "vessel_host.h"
 
@@ -11,11 +12,6 @@
 #include <string.h>
 #include <cmocka.h>
 
-#define assert_near(a, b, tolerance) near_((double)(a), (double)(b), (tolerance), #a, __LINE__)
-static void near_(double a, double b, double tolerance, const char *what, int line) {
-    if (!(fabs(a - b) <= tolerance))
-        fail_msg("line %d: %s is %.9g, not %.9g +- %.3g", line, what, a, b, tolerance);
-}
 static const double PI = 3.14159265358979324;
 static double turn_of(double angle) { /* to (-pi, pi] */
     return angle - 2 * PI * floor(angle / (2 * PI) + 0.5);

@@ -1,6 +1,7 @@
 /* Tracing finds the first surface that brute force in double precision finds, with its segment,
    normal and place; no vessel is too thin, no start too odd; d_min is the least distance, or that
    of the last near miss. */
+#include "near.h"
 #include "vessel_host.h"
 
 #include <math.h>
@@ -10,12 +11,6 @@
 #include <stdlib.h>
 #include <string.h>
 #include <cmocka.h>
-
-#define assert_near(a, b, tolerance) near_((double)(a), (double)(b), (tolerance), #a, __LINE__)
-static void near_(double a, double b, double tolerance, const char *what, int line) {
-    if (!(fabs(a - b) <= tolerance))
-        fail_msg("line %d: %s is %.9g, not %.9g +- %.3g", line, what, a, b, tolerance);
-}
 
 enum { MOST = 4096 };
 static float positions[3 * MOST], radii[MOST];

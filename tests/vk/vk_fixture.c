@@ -141,23 +141,6 @@ lao_image fixture_image(const host_vk_image *image, VkImageLayout before, VkImag
     return out;
 }
 
-static void change_layout(VkCommandBuffer commands, const host_vk_image *image, VkImageLayout from,
-                          VkImageLayout to) {
-    VkImageMemoryBarrier barrier;
-    memset(&barrier, 0, sizeof barrier);
-    barrier.sType = VK_STRUCTURE_TYPE_IMAGE_MEMORY_BARRIER;
-    barrier.srcAccessMask = VK_ACCESS_MEMORY_WRITE_BIT;
-    barrier.dstAccessMask = VK_ACCESS_MEMORY_READ_BIT | VK_ACCESS_MEMORY_WRITE_BIT;
-    barrier.oldLayout = from;
-    barrier.newLayout = to;
-    barrier.srcQueueFamilyIndex = barrier.dstQueueFamilyIndex = VK_QUEUE_FAMILY_IGNORED;
-    barrier.image = image->image;
-    barrier.subresourceRange.aspectMask = image->aspect;
-    barrier.subresourceRange.levelCount = barrier.subresourceRange.layerCount = 1;
-    vkCmdPipelineBarrier(commands, VK_PIPELINE_STAGE_ALL_COMMANDS_BIT,
-                         VK_PIPELINE_STAGE_ALL_COMMANDS_BIT, 0, 0, NULL, 0, NULL, 1, &barrier);
-}
-
 host_vk_image fixture_image_make(fixture *f, VkFormat format, uint32_t width, uint32_t height,
                                  float value, VkImageLayout layout) {
     const VkImageLayout to = VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL;
@@ -170,13 +153,13 @@ host_vk_image fixture_image_make(fixture *f, VkFormat format, uint32_t width, ui
     commands = host_vk_begin(f->host);
     assert_non_null(commands);
     range.aspectMask = image.aspect;
-    change_layout(commands, &image, VK_IMAGE_LAYOUT_UNDEFINED, to);
+    host_vk_image_layout(commands, &image, VK_IMAGE_LAYOUT_UNDEFINED, to);
     if (image.aspect == VK_IMAGE_ASPECT_COLOR_BIT) {
         vkCmdClearColorImage(commands, image.image, to, &color, 1, &range);
     } else {
         vkCmdClearDepthStencilImage(commands, image.image, to, &depth, 1, &range);
     }
-    change_layout(commands, &image, to, layout);
+    host_vk_image_layout(commands, &image, to, layout);
     assert_true(host_vk_submit_and_wait(f->host, commands));
     return image;
 }
