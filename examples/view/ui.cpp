@@ -320,13 +320,14 @@ bool ui_combo(const char *label, int *chosen, const char *choices) {
         else
             items.back() += *c;
     }
-    const char *shown = *chosen >= 0 && *chosen < (int)items.size() ? items[*chosen].c_str() : "";
+    const char *shown =
+        *chosen >= 0 && *chosen < (int)items.size() ? items[(size_t)*chosen].c_str() : "";
     bool changed = false;
     if (!ImGui::BeginCombo(label, shown, ImGuiComboFlags_HeightLarge))
         return placed(label, false);
     for (int i = 0; i < (int)items.size(); i++) {
-        bool now = ImGui::Selectable(items[i].c_str(), i == *chosen);
-        if (placed((std::string(label) + " " + items[i]).c_str(), now)) {
+        bool now = ImGui::Selectable(items[(size_t)i].c_str(), i == *chosen);
+        if (placed((std::string(label) + " " + items[(size_t)i]).c_str(), now)) {
             changed = i != *chosen;
             *chosen = i;
         }
