@@ -26,16 +26,13 @@ everything=(-Weverything
   -Wno-c++98-compat -Wno-c++98-compat-pedantic -Wno-old-style-cast -Wno-zero-as-null-pointer-constant
   -Wno-pre-c++17-compat -Wno-pre-c11-compat -Wno-pre-c2x-compat)
 
-headers=()
-for header in lineao.h sdfvessel.h vesselsurface.h flow4d.h; do
-  if [ -e "$root/$header" ]; then headers+=("$header"); fi
-done
+headers=(lineao.h sdfvessel.h vesselsurface.h flow4d.h)
 compilers=()
 for compiler in gcc clang; do
   if command -v $compiler >/dev/null; then compilers+=("$compiler"); fi
 done
-if [ ${#compilers[@]} = 0 ] || [ ${#headers[@]} = 0 ]; then
-  echo "nothing to compile: compilers [${compilers[*]}], headers [${headers[*]}]"
+if [ ${#compilers[@]} = 0 ]; then
+  echo "there is neither gcc nor clang"
   exit 1
 fi
 

@@ -7,6 +7,7 @@
 #include "surface.h"
 #include "video.h"
 
+#include <ctype.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -486,6 +487,25 @@ static bool is_flow_flag(const flag_row *row) {
     return !row->per_file && row->offset >= begin && row->offset < begin + sizeof(cli_flow_options);
 }
 
+/* What the name of a flag's value does not say of it. */
+static const char *value_range(flag_type type) {
+    switch (type) {
+    case FLAG_COUNT:
+        return ", a whole number from 1";
+    case FLAG_SIZE:
+        return ", each from 1 to 32768";
+    case FLAG_LENGTH:
+        return ", a number from 0";
+    case FLAG_ABOVE:
+    case FLAG_AUTO:
+        return ", a number above 0";
+    case FLAG_NUMBER:
+        return ", a number";
+    default:
+        return "";
+    }
+}
+
 static bool set_flag(parser *p, const flag_row *row, const char *value) {
     if (is_flow_flag(row))
         p->options->flow_flag = row->name;
@@ -555,8 +575,8 @@ static bool set_flag(parser *p, const flag_row *row, const char *value) {
         ok = parse_lens(value, field);
         break;
     }
-    return ok || cli_fail("%s: '%s' is not a value of it; write %s", row->name, value,
-                          row->choices ? row->choices : row->value);
+    return ok || cli_fail("%s: '%s' is not a value of it; write %s%s", row->name, value,
+                          row->choices ? row->choices : row->value, value_range(row->type));
 }
 
 static const flag_row *find_flag(cli_command_bit command, const char *name, size_t length) {
@@ -620,6 +640,21 @@ static int take_flag(parser *p, int argc, char **argv, int at) {
 }
 
 /* What io_write_lines writes. */
+/* A name that promises what is not written. */
+static bool is_other_picture(const char *path) {
+    static const char *const names[] = {".jpg", ".jpeg", ".tif", ".tiff", ".bmp", ".webp", ".exr",
+                                        ".svg", ".pdf",  ".ppm", ".avi",  ".mov", ".mkv"};
+    const char *dot = path ? strrchr(path, '.') : NULL;
+    bool other = false;
+    for (size_t i = 0; dot && i < sizeof names / sizeof *names && !other; i++) {
+        size_t k = 0;
+        while (names[i][k] && tolower((unsigned char)dot[k]) == names[i][k])
+            k++;
+        other = !names[i][k] && !dot[k];
+    }
+    return other;
+}
+
 static bool is_line_name(const char *path) {
     const char *dot = strrchr(path, '.');
     return dot && is_choice("vtp|trk|tck", dot + 1);
@@ -650,7 +685,9 @@ static bool check_lens(const cli_options *o) {
 static bool check_vessel(const cli_options *o) {
     const cli_vessel_options *v = &o->vessel;
     if (o->file_count > 1)
-        return cli_fail("%s: is a second TREE, and one is drawn at a time", o->files[1].path);
+        return cli_fail("%s: is a second TREE, and one is drawn at a time; lineao "
+                        "render draws several",
+                        o->files[1].path);
     if (o->file_count == 1 && v->nodes)
         return cli_fail("--nodes: is for the embedded tree, and a TREE is given");
     if (!o->out && !o->dump && !o->timings && !o->save_camera && !v->layout[0] && !v->layout[1] &&
@@ -686,7 +723,9 @@ static bool check_surface(const cli_options *o) {
     bool volume = o->file_count > 0 && io_is_volume(o->files[0].path);
     bool flow = volume || cli_wall_has_lines(o);
     if (o->file_count > 1 && !volume)
-        return cli_fail("%s: is a second MESH, and one is drawn at a time", o->files[1].path);
+        return cli_fail("%s: is a second MESH, and one is drawn at a time; lineao "
+                        "render draws several",
+                        o->files[1].path);
     if (o->flow_flag && !volume)
         return cli_fail("%s: is for velocity volumes, and none is given", o->flow_flag);
     if (s->lines && volume)
@@ -734,6 +773,10 @@ static bool check(const parser *p) {
         return false;
     if (p->command == CLI_RENDER && !o->out && !o->dump && !o->timings && !o->save_camera)
         return cli_fail("render: no output is asked for; write -o out.png");
+    if (is_other_picture(o->out))
+        return cli_fail("--out: '%s' is not a value of it; its name must end in .png or, of a "
+                        "video, .mp4, .webm or .gif",
+                        o->out);
     if (cli_is_video(o->out) && !o->frames && !o->vessel.cameras)
         return cli_fail("%s: a video has frames; write --frames N", o->out);
     if (cli_is_video(o->out) && o->background[3] < 1)

@@ -10,6 +10,7 @@
 #include "vessel.h"
 
 #include <math.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -18,6 +19,15 @@
 static bool on_progress(void *user, uint64_t done, uint64_t total) {
     cli_progress_show(user, done, total);
     return cli_interrupted();
+}
+
+/* Who reads what `vessel` and `surface` do not. */
+static const char *other_command(const cli_source *source, unsigned wanted, const char *fault) {
+    if (wanted != (IO_TREE | IO_MESH) || source->as)
+        return "";
+    if (io_is_volume(source->path))
+        return "; it is a volume: lineao surface draws its wall and lineao flow traces its lines";
+    return strstr(fault, "), not a ") ? "; lineao render draws it" : "";
 }
 
 bool cli_read(const cli_source *source, unsigned wanted, io_contents *out) {
@@ -34,7 +44,9 @@ bool cli_read(const cli_source *source, unsigned wanted, io_contents *out) {
     bool ok = io_read(source->path, wanted, &options, out, &error);
     cli_progress_end(&progress);
     if (!ok)
-        return cli_interrupted() ? cli_go_on() : cli_fail("%s: %s", source->path, error.text);
+        return cli_interrupted() ? cli_go_on()
+                                 : cli_fail("%s: %s%s", source->path, error.text,
+                                            other_command(source, wanted, error.text));
     if (!cli_go_on()) {
         io_contents_free(out);
         return false;
@@ -164,6 +176,50 @@ static bool follow_time(const cli_options *options, cli_scene *scene) {
     return any || !asked ||
            cli_fail("%s: %s needs the point array 'time' (ms), which no set has",
                     scene->sets[0].name, isnan(options->time) ? "--frames" : "--time");
+}
+
+/* The diagonal of the box around all points, mm. */
+static double diagonal_of(const cli_scene *scene) {
+    double low[3] = {INFINITY, INFINITY, INFINITY}, high[3] = {-INFINITY, -INFINITY, -INFINITY};
+    for (uint32_t i = 0; i < scene->count; i++) {
+        const io_lines *lines = &scene->sets[i].lines;
+        for (size_t k = 0; k < 3 * (size_t)lines->point_count; k++) {
+            double v = (double)lines->points[k];
+            low[k % 3] = isfinite(v) ? fmin(low[k % 3], v) : low[k % 3];
+            high[k % 3] = isfinite(v) ? fmax(high[k % 3], v) : high[k % 3];
+        }
+    }
+    double sum = 0;
+    for (int k = 0; k < 3 && high[k] >= low[k]; k++)
+        sum += (high[k] - low[k]) * (high[k] - low[k]);
+    return sqrt(sum);
+}
+
+enum { LEAST_WIDTHS = 6, MOST_WIDTHS = 2000, FITTING_WIDTHS = 300 };
+
+/* A width in mm suits what is measured in mm. In a FILE of another unit, which few formats tell,
+ * lines of that width are nothing but blots, or are not seen at all. */
+static void fit_widths(cli_scene *scene) {
+    double across = diagonal_of(scene);
+    for (uint32_t i = 0; i < scene->count; i++) {
+        cli_set *set = &scene->sets[i];
+        lao_settings *s = &set->settings;
+        double width = (double)lao_settings_filled(s).width, fit = across / FITTING_WIDTHS;
+        char text[160];
+        if (set->object || !set->source->path || (s->set & LAO_SET(width)) || !(across > 0) ||
+            (across >= LEAST_WIDTHS * width && across <= MOST_WIDTHS * width))
+            continue;
+        snprintf(text, sizeof text,
+                 "it is %.3g mm across, for which lines %g mm wide are too %s; they are %.2g mm "
+                 "wide instead, unless --width tells",
+                 across, width, fit < width ? "wide" : "thin", fit);
+        cli_warn(set->name, text);
+        if (!(s->set & LAO_SET(radius_step)))
+            s->radius_step =
+                fmaxf(lao_settings_filled(s).radius_step * (float)(fit / width), 0.01f);
+        s->width = (float)fmin(fmax(fit, 1e-4), 1000);
+        s->set |= LAO_SET(width) | LAO_SET(radius_step);
+    }
 }
 
 /* ---- what a FILE is drawn as ------------------------------------------------------------ */
@@ -404,6 +460,7 @@ bool cli_scene_load(const cli_options *options, cli_scene *out) {
         cli_scene_free(&scene);
         return false;
     }
+    fit_widths(&scene);
     if (options->view)
         camera_view(options->view, scene.direction, scene.up);
     *out = scene;
@@ -483,6 +540,9 @@ bool cli_scene_join(cli_scene *scene, cli_scene *part) {
 void cli_scene_warn(const cli_scene *scene) {
     char text[512];
     for (uint32_t i = 0; i < scene->count; i++) {
+        const cli_set *set = &scene->sets[i];
+        if (!set->object && !set->overlay && set->lines.point_count == 0)
+            cli_warn(set->name, "there are no lines to draw");
         for (uint32_t w = 0; w < scene->sets[i].lines.warning_count; w++)
             cli_warn(scene->sets[i].name, scene->sets[i].lines.warnings[w]);
     }

@@ -23,8 +23,13 @@ static double now(void *user) {
 /* lineao logs one item per failure: that is our one line. */
 static void on_log(void *user, lao_log_item item, lao_result result, const char *text) {
     const cli_session *session = user;
-    (void)item;
-    if (!session->quiet)
+    if (session->quiet)
+        return;
+    if (item == LAO_LOG_VIEW_SIZE)
+        cli_fail("--size: times --ssaa it is more than this device draws with %s; write less of "
+                 "one of them",
+                 session->backend);
+    else
         cli_fail("%s: %s: %s", session->backend, lao_result_text(result), text);
 }
 

@@ -239,12 +239,20 @@ static bool find_curvature(cli_wall *wall) {
     return ok;
 }
 
+/* Is the MESH nowhere near the size of a vessel, as one in another unit is? */
+static bool is_odd_size(const cli_wall *wall) {
+    const vsf_mesh_info *info = &wall->mesh.info;
+    double across = sqrt(fmax(info->area, 0));
+    return across < 1 || across > 3000;
+}
+
 /* --brightness auto: a silhouette of the median curvature gets three quarters of full opacity. That
- * is 1.5 mm, as L14's users liked best, where vessels have a radius of 2 mm. */
+ * is 1.5 mm, as L14's users liked best, where vessels have a radius of 2 mm. It is what trees and
+ * masks get, and a MESH of which that length shows all or nothing. */
 static bool find_brightness(cli_wall *wall) {
     double wanted = wall->options->surface.brightness;
     bool given = (wall->settings.set & VSF_SET(brightness)) != 0;
-    if (wanted < 0 && (given || wall->contents.kinds & IO_MESH))
+    if (wanted < 0 && (given || (wall->contents.kinds & IO_MESH && !is_odd_size(wall))))
         return true;
     if (!(wanted > 0) && !find_curvature(wall))
         return false;

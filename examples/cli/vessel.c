@@ -133,8 +133,10 @@ static bool add_forms(cli_tree *tree) {
         char *end;
         double mm = strtod(text, &end);
         if (!from && (*end || end == text || !(mm >= 0 && mm < 1e6)))
-            return cli_fail("%s: its nodes have no attribute '%s' for --uncertainty", tree->name,
-                            text);
+            return cli_fail(
+                "%s: its nodes have no attribute '%s' for --uncertainty; write MM or one "
+                "that lineao info lists",
+                tree->name, text);
         if (!add_form(tree, 0, SDV_UNCERTAINTY, mm, from))
             return false;
     }

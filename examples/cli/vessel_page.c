@@ -33,8 +33,9 @@ bool cli_page_make(const cli_options *options, bool scaled, cli_page *out) {
     int64_t w = (room[0] - out->left - (int64_t)out->gap * (across + 1)) / across;
     int64_t h = (room[1] - out->head - (int64_t)out->gap * (down + 1)) / down;
     if (w < SMALLEST || h < SMALLEST)
-        return cli_fail("--size: %ux%u is too small for %u views and their layouts",
-                        options->size[0], options->size[1], out->columns);
+        return cli_fail("--size: %ux%u is too small for %u tree%s and layout%s; write a larger one",
+                        options->size[0], options->size[1], out->columns,
+                        out->columns > 1 ? "s" : "", out->columns > 1 ? "s" : "");
     out->panel[0] = (uint32_t)w;
     out->panel[1] = (uint32_t)h;
     return true;

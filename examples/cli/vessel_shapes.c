@@ -4,6 +4,7 @@
 #include "report.h"
 
 #include <math.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -17,6 +18,12 @@ typedef struct solid_mesh {
     uint32_t *triangles;
     uint32_t point_count, triangle_count;
 } solid_mesh;
+
+/* A text that is no numbers is a name: of a file, or of nothing, which is more likely a slip. */
+static bool is_file(const char *path) {
+    FILE *file = fopen(path, "rb");
+    return file && fclose(file) == 0;
+}
 
 static bool has_mesh(const cli_source *source, io_contents *contents) {
     memset(contents, 0, sizeof *contents);
@@ -107,6 +114,8 @@ static bool file_target(cli_tree *tree, const char *path) {
     io_contents contents;
     solid_mesh mesh = {0};
     source.path = path;
+    if (!is_file(path))
+        return cli_fail("--target: '%s' is neither X,Y,Z,R nor a file that can be opened", path);
     if (!has_mesh(&source, &contents))
         return false;
     bool ok =
@@ -344,7 +353,8 @@ static bool file_shape(cli_tree *tree, cli_carving *carving, const char *path, u
 /* ---- shapes ----------------------------------------------------------------------------- */
 
 static bool wrong_shape(const char *text) {
-    return cli_fail("%s: is no shape; write sphere:X,Y,Z,R, box:X,Y,Z,X,Y,Z (two corners), "
+    return cli_fail("%s: is no shape, nor a file that can be opened; write sphere:X,Y,Z,R, "
+                    "box:X,Y,Z,X,Y,Z (two corners), "
                     "plane:NX,NY,NZ,D, ellipsoid:X,Y,Z,A,B,C (half axes), tree or a FILE",
                     text);
 }
@@ -386,6 +396,8 @@ static bool parse_shape(cli_tree *tree, const char *text, sdv_shape *shape) {
         shape->kind = SDV_SHAPE_PLANE;
         shape->a = lao_v4_make((float)(v[0] / size), (float)(v[1] / size), (float)(v[2] / size),
                                (float)offset);
+    } else if (!is_file(text)) {
+        return wrong_shape(text);
     } else {
         return file_shape(tree, &tree->carving, text, IO_MESH | IO_TREE, shape);
     }

@@ -71,7 +71,8 @@ static const format *find_format(const io_cursor *bytes, const char *name) {
 /* ---- Reading --------------------------------------------------------------------------------- */
 
 static const char *kind_text(unsigned kinds) {
-    return kinds & IO_LINES ? "lines" : kinds & IO_TREE ? "a vessel tree" : "a surface mesh";
+    const char *tree = kinds & IO_MESH ? "a vessel tree or a surface mesh" : "a vessel tree";
+    return kinds & IO_LINES ? "lines" : kinds & IO_TREE ? tree : "a surface mesh";
 }
 
 static bool finish(io_reader *r, const char *name, io_contents *out) {

@@ -307,6 +307,7 @@ bool io_read_trx_folder(io_reader *r, const char *path) {
             return false;
     }
     if (!find_entry(&a, "header.json"))
-        return io_fail(r, "is a folder without header.json: not an unpacked TRX");
+        return io_fail(
+            r, "is a folder, and no unpacked TRX, which has a header.json; name a file in it");
     return read_archive(r, &a);
 }

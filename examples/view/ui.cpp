@@ -326,8 +326,9 @@ bool ui_combo(const char *label, int *chosen, const char *choices) {
     if (!ImGui::BeginCombo(label, shown, ImGuiComboFlags_HeightLarge))
         return placed(label, false);
     for (int i = 0; i < (int)items.size(); i++) {
-        bool now = ImGui::Selectable(items[(size_t)i].c_str(), i == *chosen);
-        if (placed((std::string(label) + " " + items[(size_t)i]).c_str(), now)) {
+        const std::string &item = items[(size_t)i];
+        bool now = ImGui::Selectable(item.c_str(), i == *chosen);
+        if (placed((std::string(label) + " " + item).c_str(), now)) {
             changed = i != *chosen;
             *chosen = i;
         }

@@ -266,6 +266,26 @@ typedef struct lao_reference {
     lao_load load; /* writes only */
 } lao_reference;
 
+/* References for tables of passes. Reads: an image as it was written last, at the level of the
+   step, the level below it or above it, or one level; as it was in the last frame. Writes: every
+   texel; cleared by each step, or by the first of a frame; the ping-pong partner; one level; the
+   levels above one (LAO_REPEAT_LEVELS_UP). */
+// clang-format off
+#define LAO_READ(image) {image, LAO_LEVEL_SAME, 0, LAO_PHASE_THIS, LAO_LOAD_DISCARD}
+#define LAO_READ_FINER(image) {image, LAO_LEVEL_FINER, 0, LAO_PHASE_THIS, LAO_LOAD_DISCARD}
+#define LAO_READ_COARSER(image) {image, LAO_LEVEL_COARSER, 0, LAO_PHASE_THIS, LAO_LOAD_DISCARD}
+#define LAO_READ_LEVEL(image, level) {image, LAO_LEVEL_INDEX, level, LAO_PHASE_THIS, LAO_LOAD_DISCARD}
+#define LAO_READ_OTHER(image) {image, LAO_LEVEL_SAME, 0, LAO_PHASE_OTHER, LAO_LOAD_DISCARD}
+#define LAO_READ_PREVIOUS(image) {image, LAO_LEVEL_SAME, 0, LAO_PHASE_PREVIOUS, LAO_LOAD_DISCARD}
+#define LAO_WRITE(image) {image, LAO_LEVEL_SAME, 0, LAO_PHASE_THIS, LAO_LOAD_DISCARD}
+#define LAO_WRITE_CLEARED(image) {image, LAO_LEVEL_SAME, 0, LAO_PHASE_THIS, LAO_LOAD_CLEAR}
+#define LAO_WRITE_KEPT(image) {image, LAO_LEVEL_SAME, 0, LAO_PHASE_THIS, LAO_LOAD_KEEP}
+#define LAO_WRITE_OTHER(image) {image, LAO_LEVEL_SAME, 0, LAO_PHASE_OTHER, LAO_LOAD_DISCARD}
+#define LAO_WRITE_OTHER_CLEARED(image) {image, LAO_LEVEL_SAME, 0, LAO_PHASE_OTHER, LAO_LOAD_CLEAR}
+#define LAO_WRITE_LEVEL(image, level) {image, LAO_LEVEL_INDEX, level, LAO_PHASE_THIS, LAO_LOAD_DISCARD}
+#define LAO_WRITE_ABOVE(image, level) {image, LAO_LEVEL_SAME, level, LAO_PHASE_THIS, LAO_LOAD_DISCARD}
+// clang-format on
+
 typedef enum lao_pass_kind {
     LAO_PASS_FULLSCREEN, /* one triangle over the image; reads buffers of the set's object */
     LAO_PASS_DRAW_MESH,  /* three vertices for each triangle of the set's object; nothing without
@@ -359,6 +379,11 @@ typedef struct lao_setting_row {
     const char *choices; /* LAO_SETTING_ENUM: "a|b|c", value = position */
     const char *help;
 } lao_setting_row;
+/* A row of such a list as LAO_SETTINGS, in a table and in a struct of settings. */
+#define LAO_SETTING_ROW(name, type, minimum, maximum, standard, structural, unit, choices, help)   \
+    {#name, LAO_SETTING_##type, minimum, maximum, standard, structural, unit, choices, help},
+#define LAO_SETTING_FIELD(name, type, minimum, maximum, standard, structural, unit, choices, help) \
+    float name;
 
 typedef struct lao_preset_row {
     const char *preset;
@@ -503,10 +528,7 @@ LAO_API const lao_pass_row *lao_passes(int *count);
    settings hold the position of the choice. */
 typedef struct lao_settings {
     uint64_t set;
-#define LAO__FIELD(name, type, minimum, maximum, standard, structural, unit, choices, help)        \
-    float name;
-    LAO_SETTINGS(LAO__FIELD)
-#undef LAO__FIELD
+    LAO_SETTINGS(LAO_SETTING_FIELD)
 } lao_settings;
 
 typedef enum lao_setting {

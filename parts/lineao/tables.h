@@ -15,19 +15,10 @@ extern "C" {
 #endif
 
 // clang-format off
-#define LAO__NOTHING {NULL, LAO_LEVEL_SAME, 0, LAO_PHASE_THIS, LAO_LOAD_DISCARD}
-#define LAO__READ(image) {image, LAO_LEVEL_SAME, 0, LAO_PHASE_THIS, LAO_LOAD_DISCARD}
-#define LAO__READ_FINER(image) {image, LAO_LEVEL_FINER, 0, LAO_PHASE_THIS, LAO_LOAD_DISCARD}
-#define LAO__READ_LEVEL(image, level) {image, LAO_LEVEL_INDEX, level, LAO_PHASE_THIS, LAO_LOAD_DISCARD}
-#define LAO__READ_COARSE(image) LAO__READ_LEVEL(image, 1), LAO__READ_LEVEL(image, 2), LAO__READ_LEVEL(image, 3), LAO__READ_LEVEL(image, 4), \
-                                LAO__READ_LEVEL(image, 5), LAO__READ_LEVEL(image, 6), LAO__READ_LEVEL(image, 7)
-#define LAO__READ_ALL(image) LAO__READ_LEVEL(image, 0), LAO__READ_COARSE(image)
-#define LAO__CLEAR(image) {image, LAO_LEVEL_SAME, 0, LAO_PHASE_THIS, LAO_LOAD_CLEAR}
-#define LAO__KEEP(image) {image, LAO_LEVEL_SAME, 0, LAO_PHASE_THIS, LAO_LOAD_KEEP}
-#define LAO__WRITE(image) {image, LAO_LEVEL_SAME, 0, LAO_PHASE_THIS, LAO_LOAD_DISCARD}
-#define LAO__OTHER(image) {image, LAO_LEVEL_SAME, 0, LAO_PHASE_OTHER, LAO_LOAD_DISCARD}
-#define LAO__WRITE_LEVEL(image, level) {image, LAO_LEVEL_INDEX, level, LAO_PHASE_THIS, LAO_LOAD_DISCARD}
-#define LAO__WRITE_ABOVE(image, level) {image, LAO_LEVEL_SAME, level, LAO_PHASE_THIS, LAO_LOAD_DISCARD} /* LAO_REPEAT_LEVELS_UP */
+#define LAO__NOTHING LAO_READ(NULL)
+#define LAO__READ_COARSE(image) LAO_READ_LEVEL(image, 1), LAO_READ_LEVEL(image, 2), LAO_READ_LEVEL(image, 3), LAO_READ_LEVEL(image, 4), \
+                                LAO_READ_LEVEL(image, 5), LAO_READ_LEVEL(image, 6), LAO_READ_LEVEL(image, 7)
+#define LAO__READ_ALL(image) LAO_READ_LEVEL(image, 0), LAO__READ_COARSE(image)
 #define LAO__UNKNOWN 0.501960784f /* no tangent: 128 of 255, about 0 */
 #define LAO__ALWAYS {{NULL, 0, 0}}
 #define LAO__ANY {NULL, 0, 0}
@@ -54,66 +45,63 @@ static const lao_image_row lao__images[] = {
 static const lao_pass_row lao__passes[] = {
     /* the host's depth, so that its objects hide our lines */
     {"import_depth", LAO_PASS_FULLSCREEN, "import_depth", 0, LAO_STAGE_DRAW, LAO_SCOPE_FRAME, LAO_REPEAT_NONE, NULL, LAO_BLEND_NONE, LAO_DEPTH_ALWAYS, LAO_CULL_NONE, {{"@host_depth", '>', 0}},
-     {LAO__WRITE("zbuffer")}, {LAO__READ("host_depth")}},
+     {LAO_WRITE("zbuffer")}, {LAO_READ("host_depth")}},
     /* G-buffer: colour and mask, tangent and zoom, linear depth (METHODS 1.1). One row of four draws a set: what the fragments need to know of the line's
        outline or of a fade costs where there is none, and who writes depth is tested late */
     {"lines", LAO_PASS_DRAW_LINES_FIRST, "lines", 0, LAO_STAGE_DRAW, LAO_SCOPE_PER_SET, LAO_REPEAT_NONE, NULL, LAO_BLEND_NONE, LAO_DEPTH_NEARER, LAO_CULL_NONE, {LAO__LINES, {"halo", '=', LAO_HALO_NONE}, {"trail", '!', LAO_TRAIL_OPACITY}},
-     {LAO__CLEAR("color"), LAO__CLEAR("tangent"), LAO__CLEAR("depth"), LAO__KEEP("zbuffer")}, {LAO__READ("#points"), LAO__READ("#colors"), LAO__READ("#order")}},
+     {LAO_WRITE_CLEARED("color"), LAO_WRITE_CLEARED("tangent"), LAO_WRITE_CLEARED("depth"), LAO_WRITE_KEPT("zbuffer")}, {LAO_READ("#points"), LAO_READ("#colors"), LAO_READ("#order")}},
     {"lines_fading", LAO_PASS_DRAW_LINES_FIRST, "lines_rim", 0, LAO_STAGE_DRAW, LAO_SCOPE_PER_SET, LAO_REPEAT_NONE, NULL, LAO_BLEND_NONE, LAO_DEPTH_NEARER, LAO_CULL_NONE, {LAO__LINES, {"halo", '=', LAO_HALO_NONE}, {"trail", '=', LAO_TRAIL_OPACITY}},
-     {LAO__CLEAR("color"), LAO__CLEAR("tangent"), LAO__CLEAR("depth"), LAO__KEEP("zbuffer")}, {LAO__READ("#points"), LAO__READ("#colors"), LAO__READ("#order")}},
+     {LAO_WRITE_CLEARED("color"), LAO_WRITE_CLEARED("tangent"), LAO_WRITE_CLEARED("depth"), LAO_WRITE_KEPT("zbuffer")}, {LAO_READ("#points"), LAO_READ("#colors"), LAO_READ("#order")}},
     {"lines_rim", LAO_PASS_DRAW_LINES_FIRST, "lines_rim", 0, LAO_STAGE_DRAW, LAO_SCOPE_PER_SET, LAO_REPEAT_NONE, NULL, LAO_BLEND_NONE, LAO_DEPTH_NEARER, LAO_CULL_NONE, {LAO__LINES, {"halo", '=', LAO_HALO_UNIFORM}},
-     {LAO__CLEAR("color"), LAO__CLEAR("tangent"), LAO__CLEAR("depth"), LAO__KEEP("zbuffer")}, {LAO__READ("#points"), LAO__READ("#colors"), LAO__READ("#order")}},
+     {LAO_WRITE_CLEARED("color"), LAO_WRITE_CLEARED("tangent"), LAO_WRITE_CLEARED("depth"), LAO_WRITE_KEPT("zbuffer")}, {LAO_READ("#points"), LAO_READ("#colors"), LAO_READ("#order")}},
     {"lines_halo", LAO_PASS_DRAW_LINES_FIRST, "lines_halo", 0, LAO_STAGE_DRAW, LAO_SCOPE_PER_SET, LAO_REPEAT_NONE, NULL, LAO_BLEND_NONE, LAO_DEPTH_NEARER, LAO_CULL_NONE, {LAO__LINES, {"halo", '=', LAO_HALO_DEPTH}},
-     {LAO__CLEAR("color"), LAO__CLEAR("tangent"), LAO__CLEAR("depth"), LAO__KEEP("zbuffer")}, {LAO__READ("#points"), LAO__READ("#colors"), LAO__READ("#order")}},
+     {LAO_WRITE_CLEARED("color"), LAO_WRITE_CLEARED("tangent"), LAO_WRITE_CLEARED("depth"), LAO_WRITE_KEPT("zbuffer")}, {LAO_READ("#points"), LAO_READ("#colors"), LAO_READ("#order")}},
     /* of many lines a part is drawn first; of each further part only what does not lie wholly behind the farthest depth around it */
     {"far_tiles", LAO_PASS_FULLSCREEN, "far", 0, LAO_STAGE_DRAW, LAO_SCOPE_PER_SET, LAO_REPEAT_COUNT, "cull_hidden", LAO_BLEND_NONE, LAO_DEPTH_NONE, LAO_CULL_NONE, {LAO__LINES, {"cull_hidden", '>', 0}, {"@color", '=', 0}},
-     {LAO__WRITE_LEVEL("far_tiles", 2)}, {LAO__READ("zbuffer")}},
+     {LAO_WRITE_LEVEL("far_tiles", 2)}, {LAO_READ("zbuffer")}},
     {"far", LAO_PASS_FULLSCREEN, "far", 1, LAO_STAGE_DRAW, LAO_SCOPE_PER_SET, LAO_REPEAT_WITH_LAST, NULL, LAO_BLEND_NONE, LAO_DEPTH_NONE, LAO_CULL_NONE, {LAO__LINES, {"cull_hidden", '>', 0}, {"@color", '=', 0}},
-     {LAO__WRITE_LEVEL("far", 2)}, {LAO__READ_LEVEL("far_tiles", 2)}},
+     {LAO_WRITE_LEVEL("far", 2)}, {LAO_READ_LEVEL("far_tiles", 2)}},
     {"lines_rest", LAO_PASS_DRAW_LINES_REST, "lines", 1, LAO_STAGE_DRAW, LAO_SCOPE_PER_SET, LAO_REPEAT_WITH_LAST, NULL, LAO_BLEND_NONE, LAO_DEPTH_NEARER, LAO_CULL_NONE, {LAO__LINES, {"cull_hidden", '>', 0}, {"halo", '=', LAO_HALO_NONE}},
-     {LAO__KEEP("color"), LAO__KEEP("tangent"), LAO__KEEP("depth"), LAO__KEEP("zbuffer")}, {LAO__READ("#points"), LAO__READ("#colors"), LAO__READ("#order"), LAO__READ_LEVEL("far", 2)}},
+     {LAO_WRITE_KEPT("color"), LAO_WRITE_KEPT("tangent"), LAO_WRITE_KEPT("depth"), LAO_WRITE_KEPT("zbuffer")}, {LAO_READ("#points"), LAO_READ("#colors"), LAO_READ("#order"), LAO_READ_LEVEL("far", 2)}},
     {"lines_rim_rest", LAO_PASS_DRAW_LINES_REST, "lines_rim", 1, LAO_STAGE_DRAW, LAO_SCOPE_PER_SET, LAO_REPEAT_WITH_LAST, NULL, LAO_BLEND_NONE, LAO_DEPTH_NEARER, LAO_CULL_NONE, {LAO__LINES, {"cull_hidden", '>', 0}, {"halo", '=', LAO_HALO_UNIFORM}},
-     {LAO__KEEP("color"), LAO__KEEP("tangent"), LAO__KEEP("depth"), LAO__KEEP("zbuffer")}, {LAO__READ("#points"), LAO__READ("#colors"), LAO__READ("#order"), LAO__READ_LEVEL("far", 2)}},
+     {LAO_WRITE_KEPT("color"), LAO_WRITE_KEPT("tangent"), LAO_WRITE_KEPT("depth"), LAO_WRITE_KEPT("zbuffer")}, {LAO_READ("#points"), LAO_READ("#colors"), LAO_READ("#order"), LAO_READ_LEVEL("far", 2)}},
     {"lines_halo_rest", LAO_PASS_DRAW_LINES_REST, "lines_halo", 1, LAO_STAGE_DRAW, LAO_SCOPE_PER_SET, LAO_REPEAT_WITH_LAST, NULL, LAO_BLEND_NONE, LAO_DEPTH_NEARER, LAO_CULL_NONE, {LAO__LINES, {"cull_hidden", '>', 0}, {"halo", '=', LAO_HALO_DEPTH}},
-     {LAO__KEEP("color"), LAO__KEEP("tangent"), LAO__KEEP("depth"), LAO__KEEP("zbuffer")}, {LAO__READ("#points"), LAO__READ("#colors"), LAO__READ("#order"), LAO__READ_LEVEL("far", 2)}},
+     {LAO_WRITE_KEPT("color"), LAO_WRITE_KEPT("tangent"), LAO_WRITE_KEPT("depth"), LAO_WRITE_KEPT("zbuffer")}, {LAO_READ("#points"), LAO_READ("#colors"), LAO_READ("#order"), LAO_READ_LEVEL("far", 2)}},
     /* the host's G-buffer instead of our lines: its mask as depth, for the passes that skip background by it */
     {"cover", LAO_PASS_FULLSCREEN, "cover", 0, LAO_STAGE_DRAW, LAO_SCOPE_PER_SET, LAO_REPEAT_NONE, NULL, LAO_BLEND_NONE, LAO_DEPTH_ALWAYS, LAO_CULL_NONE, {{"@color", '>', 0}},
-     {LAO__CLEAR("zbuffer")}, {LAO__READ("color")}},
+     {LAO_WRITE_CLEARED("zbuffer")}, {LAO_READ("color")}},
     /* level 0 of what a sample reads */
     {"level_zero", LAO_PASS_FULLSCREEN, "level_zero", 0, LAO_STAGE_SHADE, LAO_SCOPE_PER_SET, LAO_REPEAT_NONE, NULL, LAO_BLEND_NONE, LAO_DEPTH_COVERED, LAO_CULL_NONE, {LAO__LINES, {"occlusion", '=', 1}},
-     {LAO__CLEAR("level"), LAO__CLEAR("level_tangent"), LAO__KEEP("zbuffer")},
-     {LAO__READ("color"), LAO__READ("tangent"), LAO__READ("depth")}},
+     {LAO_WRITE_CLEARED("level"), LAO_WRITE_CLEARED("level_tangent"), LAO_WRITE_KEPT("zbuffer")},
+     {LAO_READ("color"), LAO_READ("tangent"), LAO_READ("depth")}},
     /* coarser levels, and from level 1 on the sums that the next one is made of */
     {"level_one", LAO_PASS_FULLSCREEN, "level_one", 0, LAO_STAGE_SHADE, LAO_SCOPE_PER_SET, LAO_REPEAT_NONE, NULL, LAO_BLEND_NONE, LAO_DEPTH_NONE, LAO_CULL_NONE, {LAO__LINES, {"occlusion", '=', 1}, {"levels", '>', 1}},
-     {LAO__WRITE_LEVEL("tensor", 1), LAO__WRITE_LEVEL("level", 1), LAO__WRITE_LEVEL("level_tangent", 1)},
-     {LAO__READ_LEVEL("level", 0), LAO__READ_LEVEL("level_tangent", 0)}},
+     {LAO_WRITE_LEVEL("tensor", 1), LAO_WRITE_LEVEL("level", 1), LAO_WRITE_LEVEL("level_tangent", 1)},
+     {LAO_READ_LEVEL("level", 0), LAO_READ_LEVEL("level_tangent", 0)}},
     {"level_up", LAO_PASS_FULLSCREEN, "level_up", 0, LAO_STAGE_SHADE, LAO_SCOPE_PER_SET, LAO_REPEAT_LEVELS_UP, NULL, LAO_BLEND_NONE, LAO_DEPTH_NONE, LAO_CULL_NONE, {LAO__LINES, {"occlusion", '=', 1}},
-     {LAO__WRITE_ABOVE("tensor", 1), LAO__WRITE("level"), LAO__WRITE("level_tangent")},
-     {LAO__READ_FINER("tensor"), LAO__READ_FINER("level_tangent")}},
+     {LAO_WRITE_ABOVE("tensor", 1), LAO_WRITE("level"), LAO_WRITE("level_tangent")},
+     {LAO_READ_FINER("tensor"), LAO_READ_FINER("level_tangent")}},
     {"occlusion", LAO_PASS_FULLSCREEN, "occlusion", 0, LAO_STAGE_SHADE, LAO_SCOPE_PER_SET, LAO_REPEAT_NONE, NULL, LAO_BLEND_NONE, LAO_DEPTH_COVERED, LAO_CULL_NONE, {LAO__LINES, {"occlusion", '=', 1}},
-     {LAO__CLEAR("ao"), LAO__KEEP("zbuffer")},
-     {LAO__READ("tangent"), LAO__READ_ALL("level"), LAO__READ_COARSE("level_tangent")}},
+     {LAO_WRITE_CLEARED("ao"), LAO_WRITE_KEPT("zbuffer")},
+     {LAO_READ("tangent"), LAO__READ_ALL("level"), LAO__READ_COARSE("level_tangent")}},
     /* for debugging only: shadows leak into what is not shadowed (Koehler 2017, 4.4) */
     {"smooth_x", LAO_PASS_FULLSCREEN, "smooth", 0, LAO_STAGE_SHADE, LAO_SCOPE_PER_SET, LAO_REPEAT_COUNT, "smoothing", LAO_BLEND_NONE, LAO_DEPTH_NONE, LAO_CULL_NONE, {LAO__LINES, {"occlusion", '=', 1}},
-     {LAO__OTHER("ao")}, {LAO__READ("ao"), LAO__READ("color")}},
+     {LAO_WRITE_OTHER("ao")}, {LAO_READ("ao"), LAO_READ("color")}},
     {"smooth_y", LAO_PASS_FULLSCREEN, "smooth", 1, LAO_STAGE_SHADE, LAO_SCOPE_PER_SET, LAO_REPEAT_COUNT, "smoothing", LAO_BLEND_NONE, LAO_DEPTH_NONE, LAO_CULL_NONE, {LAO__LINES, {"occlusion", '=', 1}},
-     {LAO__OTHER("ao")}, {LAO__READ("ao"), LAO__READ("color")}},
+     {LAO_WRITE_OTHER("ao")}, {LAO_READ("ao"), LAO_READ("color")}},
     {"shade", LAO_PASS_FULLSCREEN, "shade", 0, LAO_STAGE_SHADE, LAO_SCOPE_PER_SET, LAO_REPEAT_NONE, NULL, LAO_BLEND_NONE, LAO_DEPTH_COVERED, LAO_CULL_NONE, {LAO__LINES},
-     {LAO__KEEP("shaded"), LAO__KEEP("zbuffer")}, {LAO__READ("color"), LAO__READ("tangent"), LAO__READ("ao")}},
+     {LAO_WRITE_KEPT("shaded"), LAO_WRITE_KEPT("zbuffer")}, {LAO_READ("color"), LAO_READ("tangent"), LAO_READ("ao")}},
     /* box filter over the samples of a pixel, and the background */
     {"resolve", LAO_PASS_FULLSCREEN, "resolve", 0, LAO_STAGE_PRESENT, LAO_SCOPE_FRAME, LAO_REPEAT_NONE, NULL, LAO_BLEND_NONE, LAO_DEPTH_NONE, LAO_CULL_NONE, LAO__ALWAYS,
-     {LAO__WRITE("out")}, {LAO__READ("shaded")}},
+     {LAO_WRITE("out")}, {LAO_READ("shaded")}},
     {"present", LAO_PASS_FULLSCREEN, "present", 0, LAO_STAGE_PRESENT, LAO_SCOPE_FRAME, LAO_REPEAT_NONE, NULL, LAO_BLEND_OVER, LAO_DEPTH_NONE, LAO_CULL_NONE, {{"@target", '>', 0}},
-     {LAO__KEEP("target")}, {LAO__READ("out")}},
+     {LAO_WRITE_KEPT("target")}, {LAO_READ("out")}},
     {"export_depth", LAO_PASS_FULLSCREEN, "export_depth", 0, LAO_STAGE_PRESENT, LAO_SCOPE_FRAME, LAO_REPEAT_NONE, NULL, LAO_BLEND_NONE, LAO_DEPTH_NEARER, LAO_CULL_NONE, {{"@host_depth", '>', 1}},
-     {LAO__KEEP("host_depth")}, {LAO__READ("zbuffer")}}
+     {LAO_WRITE_KEPT("host_depth")}, {LAO_READ("zbuffer")}}
 };
 
 static const lao_setting_row lao__settings[] = {
-#define LAO__ROW(name, type, minimum, maximum, standard, structural, unit, choices, help) \
-    {#name, LAO_SETTING_##type, minimum, maximum, standard, structural, unit, choices, help},
-    LAO_SETTINGS(LAO__ROW)
-#undef LAO__ROW
+    LAO_SETTINGS(LAO_SETTING_ROW)
 };
 
 static const lao_preset_row lao__presets[] = {

@@ -610,10 +610,7 @@ SDV_API const lao_module *sdv_pull_push_module(void);
 /* What a vessel tree looks like; as lao_settings: zero is the default unless its bit is set. */
 typedef struct sdv_settings {
     uint64_t set;
-#define SDV__FIELD(name, type, minimum, maximum, standard, structural, unit, choices, help)        \
-    float name;
-    SDV_SETTINGS(SDV__FIELD)
-#undef SDV__FIELD
+    SDV_SETTINGS(LAO_SETTING_FIELD)
 } sdv_settings;
 
 typedef enum sdv_setting {

@@ -483,10 +483,7 @@ VSF_API double vsf_segment_distance2(const float p[3], const float a[3], const f
    shadow, focus and attenuation are those of the first surface that has them on. */
 typedef struct vsf_settings {
     uint64_t set;
-#define VSF__FIELD(name, type, minimum, maximum, standard, structural, unit, choices, help)        \
-    float name;
-    VSF_SETTINGS(VSF__FIELD)
-#undef VSF__FIELD
+    VSF_SETTINGS(LAO_SETTING_FIELD)
 } vsf_settings;
 
 typedef enum vsf_setting {

@@ -2,18 +2,12 @@
  * module: passes, images, buffers and settings, as tables; the object that the passes read. Uses
    host, measure and near. */
 // clang-format off
-#define VSF__WRITE(image) {image, LAO_LEVEL_SAME, 0, LAO_PHASE_THIS, LAO_LOAD_DISCARD}
-#define VSF__READ(image) {image, LAO_LEVEL_SAME, 0, LAO_PHASE_THIS, LAO_LOAD_DISCARD}
-#define VSF__OTHER(image) {image, LAO_LEVEL_SAME, 0, LAO_PHASE_OTHER, LAO_LOAD_DISCARD}
-#define VSF__CLEAR(image) {image, LAO_LEVEL_SAME, 0, LAO_PHASE_THIS, LAO_LOAD_CLEAR}
-#define VSF__CLEAR_OTHER(image) {image, LAO_LEVEL_SAME, 0, LAO_PHASE_OTHER, LAO_LOAD_CLEAR}
-#define VSF__KEEP(image) {image, LAO_LEVEL_SAME, 0, LAO_PHASE_THIS, LAO_LOAD_KEEP}
-#define VSF__SMALL(image) {image, LAO_LEVEL_INDEX, VSF_SHADOW_LEVEL, LAO_PHASE_THIS, LAO_LOAD_DISCARD}
-#define VSF__TILES(image) {image, LAO_LEVEL_INDEX, VSF_FOCUS_LEVEL, LAO_PHASE_THIS, LAO_LOAD_DISCARD}
+#define VSF__SMALL(image) LAO_WRITE_LEVEL(image, VSF_SHADOW_LEVEL)
+#define VSF__TILES(image) LAO_WRITE_LEVEL(image, VSF_FOCUS_LEVEL)
 #define VSF__SURFACE {"#surface_points", '>', 0}
 #define VSF__ANY {NULL, 0, 0}
-#define VSF__MESH VSF__READ("#surface_points"), VSF__READ("#surface_normals"), VSF__READ("#surface_triangles")
-#define VSF__FRONT VSF__MESH, VSF__READ("surface_measure"), VSF__READ("surface_nearness"), VSF__READ("zbuffer"), VSF__READ("#surface_map")
+#define VSF__MESH LAO_READ("#surface_points"), LAO_READ("#surface_normals"), LAO_READ("#surface_triangles")
+#define VSF__FRONT VSF__MESH, LAO_READ("surface_measure"), LAO_READ("surface_nearness"), LAO_READ("zbuffer"), LAO_READ("#surface_map")
 #define VSF__PLAIN(format, size) format, size, 0, 0, NULL, 0, LAO_ENCODING_PLAIN
 
 static const lao_image_row vsf__images[] = {
@@ -50,54 +44,51 @@ static const lao_image_row vsf__images[] = {
 static const lao_pass_row vsf__passes[] = {
     /* back faces, opaque, among the scene: lines and they hide each other by depth */
     {"surface_back", LAO_PASS_DRAW_MESH, "surface_mesh", 0, LAO_STAGE_SHADE, LAO_SCOPE_PER_SET, LAO_REPEAT_NONE, NULL, LAO_BLEND_NONE, LAO_DEPTH_NEARER, LAO_CULL_FRONT, {VSF__SURFACE},
-     {VSF__KEEP("shaded"), VSF__KEEP("zbuffer")}, {VSF__MESH}},
+     {LAO_WRITE_KEPT("shaded"), LAO_WRITE_KEPT("zbuffer")}, {VSF__MESH}},
     {"surface_measure", LAO_PASS_FULLSCREEN, "surface_measure", 0, LAO_STAGE_COMPOSE, LAO_SCOPE_PER_SET, LAO_REPEAT_NONE, NULL, LAO_BLEND_NONE, LAO_DEPTH_NONE, LAO_CULL_NONE, {VSF__SURFACE},
-     {VSF__WRITE("surface_measure"), VSF__WRITE("surface_nearness")}, {VSF__READ("#surface_points"), VSF__READ("#surface_normals"), VSF__READ("#surface_rings"), VSF__READ("#surface_near"), VSF__READ("#surface_values")}},
+     {LAO_WRITE("surface_measure"), LAO_WRITE("surface_nearness")}, {LAO_READ("#surface_points"), LAO_READ("#surface_normals"), LAO_READ("#surface_rings"), LAO_READ("#surface_near"), LAO_READ("#surface_values")}},
     /* the nearest front face, then peel by peel those behind it, and all of them over the scene */
     {"surface_front", LAO_PASS_DRAW_MESH, "surface_mesh", 1, LAO_STAGE_COMPOSE, LAO_SCOPE_PER_SET, LAO_REPEAT_NONE, NULL, LAO_BLEND_NONE, LAO_DEPTH_NEARER, LAO_CULL_BACK, {VSF__SURFACE},
-     {VSF__CLEAR("surface_over"), VSF__CLEAR_OTHER("surface_over"), VSF__CLEAR("surface_position"), VSF__CLEAR("surface_normal"), VSF__CLEAR("surface_lut"), VSF__CLEAR("surface_z")}, {VSF__FRONT}},
+     {LAO_WRITE_CLEARED("surface_over"), LAO_WRITE_OTHER_CLEARED("surface_over"), LAO_WRITE_CLEARED("surface_position"), LAO_WRITE_CLEARED("surface_normal"), LAO_WRITE_CLEARED("surface_lut"), LAO_WRITE_CLEARED("surface_z")}, {VSF__FRONT}},
     {"surface_nearest", LAO_PASS_FULLSCREEN, "surface_nearest", 0, LAO_STAGE_COMPOSE, LAO_SCOPE_PER_SET, LAO_REPEAT_NONE, NULL, LAO_BLEND_NONE, LAO_DEPTH_NEARER, LAO_CULL_NONE, {VSF__SURFACE},
-     {VSF__KEEP("surface_nearest")}, {VSF__READ("surface_z")}},
+     {LAO_WRITE_KEPT("surface_nearest")}, {LAO_READ("surface_z")}},
     {"surface_tiles", LAO_PASS_FULLSCREEN, "surface_left", 0, LAO_STAGE_COMPOSE, LAO_SCOPE_PER_SET, LAO_REPEAT_NONE, NULL, LAO_BLEND_NONE, LAO_DEPTH_NONE, LAO_CULL_NONE, {VSF__SURFACE, {"layers", '>', 0}},
-     {VSF__WRITE("surface_tiles")}, {VSF__READ("surface_z")}},
+     {LAO_WRITE("surface_tiles")}, {LAO_READ("surface_z")}},
     {"surface_left", LAO_PASS_FULLSCREEN, "surface_left", 1, LAO_STAGE_COMPOSE, LAO_SCOPE_PER_SET, LAO_REPEAT_COUNT, "layers", LAO_BLEND_NONE, LAO_DEPTH_NONE, LAO_CULL_NONE, {VSF__SURFACE},
-     {VSF__WRITE("surface_left")}, {VSF__READ("surface_tiles")}},
+     {LAO_WRITE("surface_left")}, {LAO_READ("surface_tiles")}},
     {"surface_peel", LAO_PASS_DRAW_MESH, "surface_mesh", 2, LAO_STAGE_COMPOSE, LAO_SCOPE_PER_SET, LAO_REPEAT_WITH_LAST, NULL, LAO_BLEND_NONE, LAO_DEPTH_NEARER, LAO_CULL_BACK, {VSF__SURFACE},
-     {{"surface_over", LAO_LEVEL_SAME, 0, LAO_PHASE_OTHER, LAO_LOAD_KEEP}, VSF__CLEAR_OTHER("surface_z")}, {VSF__FRONT, VSF__READ("surface_z"), VSF__READ("surface_left"), VSF__READ("surface_over")}},
+     {{"surface_over", LAO_LEVEL_SAME, 0, LAO_PHASE_OTHER, LAO_LOAD_KEEP}, LAO_WRITE_OTHER_CLEARED("surface_z")}, {VSF__FRONT, LAO_READ("surface_z"), LAO_READ("surface_left"), LAO_READ("surface_over")}},
     {"surface_tiles_left", LAO_PASS_FULLSCREEN, "surface_left", 2, LAO_STAGE_COMPOSE, LAO_SCOPE_PER_SET, LAO_REPEAT_WITH_LAST, NULL, LAO_BLEND_NONE, LAO_DEPTH_NONE, LAO_CULL_NONE, {VSF__SURFACE},
-     {VSF__OTHER("surface_tiles")}, {VSF__READ("surface_z"), VSF__READ("surface_tiles")}},
+     {LAO_WRITE_OTHER("surface_tiles")}, {LAO_READ("surface_z"), LAO_READ("surface_tiles")}},
     {"surface_over", LAO_PASS_FULLSCREEN, "surface_layers", 0, LAO_STAGE_COMPOSE, LAO_SCOPE_PER_SET, LAO_REPEAT_NONE, NULL, LAO_BLEND_NONE, LAO_DEPTH_NONE, LAO_CULL_NONE, {VSF__SURFACE},
-     {VSF__OTHER("shaded"), VSF__WRITE("surface_composed")}, {VSF__READ("surface_over"), {"surface_over", LAO_LEVEL_SAME, 0, LAO_PHASE_OTHER, LAO_LOAD_DISCARD}, VSF__READ("shaded")}},
+     {LAO_WRITE_OTHER("shaded"), LAO_WRITE("surface_composed")}, {LAO_READ("surface_over"), LAO_READ_OTHER("surface_over"), LAO_READ("shaded")}},
     /* effects of the whole picture */
     {"shadow_depth", LAO_PASS_FULLSCREEN, "surface_shadow", 0, LAO_STAGE_COMPOSE, LAO_SCOPE_FRAME, LAO_REPEAT_NONE, NULL, LAO_BLEND_NONE, LAO_DEPTH_NONE, LAO_CULL_NONE, {VSF__SURFACE, {"depth_shadow", '=', 1}},
-     {VSF__SMALL("shadow_depth")}, {VSF__READ("zbuffer"), VSF__READ("surface_nearest")}},
+     {VSF__SMALL("shadow_depth")}, {LAO_READ("zbuffer"), LAO_READ("surface_nearest")}},
     {"shadow_x", LAO_PASS_FULLSCREEN, "surface_shadow", 1, LAO_STAGE_COMPOSE, LAO_SCOPE_FRAME, LAO_REPEAT_NONE, NULL, LAO_BLEND_NONE, LAO_DEPTH_NONE, LAO_CULL_NONE, {VSF__SURFACE, {"depth_shadow", '=', 1}},
      {VSF__SMALL("shadow_x")}, {VSF__SMALL("shadow_depth")}},
     {"shadow_y", LAO_PASS_FULLSCREEN, "surface_shadow", 2, LAO_STAGE_COMPOSE, LAO_SCOPE_FRAME, LAO_REPEAT_NONE, NULL, LAO_BLEND_NONE, LAO_DEPTH_NONE, LAO_CULL_NONE, {VSF__SURFACE, {"depth_shadow", '=', 1}},
      {VSF__SMALL("shadow_blurred")}, {VSF__SMALL("shadow_x")}},
     {"depth_shadow", LAO_PASS_FULLSCREEN, "surface_effect", 0, LAO_STAGE_COMPOSE, LAO_SCOPE_FRAME, LAO_REPEAT_NONE, NULL, LAO_BLEND_NONE, LAO_DEPTH_NONE, LAO_CULL_NONE, {VSF__SURFACE, {"depth_shadow", '=', 1}},
-     {VSF__OTHER("shaded")}, {VSF__READ("shaded"), VSF__READ("zbuffer"), VSF__READ("surface_nearest"), VSF__SMALL("shadow_blurred")}},
+     {LAO_WRITE_OTHER("shaded")}, {LAO_READ("shaded"), LAO_READ("zbuffer"), LAO_READ("surface_nearest"), VSF__SMALL("shadow_blurred")}},
     {"attenuation", LAO_PASS_FULLSCREEN, "surface_effect", 1, LAO_STAGE_COMPOSE, LAO_SCOPE_FRAME, LAO_REPEAT_NONE, NULL, LAO_BLEND_NONE, LAO_DEPTH_NONE, LAO_CULL_NONE, {VSF__SURFACE, {"attenuation", '=', 1}},
-     {VSF__OTHER("shaded")}, {VSF__READ("shaded"), VSF__READ("zbuffer"), VSF__READ("surface_nearest")}},
+     {LAO_WRITE_OTHER("shaded")}, {LAO_READ("shaded"), LAO_READ("zbuffer"), LAO_READ("surface_nearest")}},
     {"focus_pixels", LAO_PASS_FULLSCREEN, "surface_focus", 0, LAO_STAGE_COMPOSE, LAO_SCOPE_FRAME, LAO_REPEAT_NONE, NULL, LAO_BLEND_NONE, LAO_DEPTH_NONE, LAO_CULL_NONE, {VSF__SURFACE, {"focus", '=', 1}},
-     {VSF__WRITE("focus_color"), VSF__WRITE("focus_depth")}, {VSF__READ("shaded"), VSF__READ("zbuffer"), VSF__READ("surface_nearest")}},
+     {LAO_WRITE("focus_color"), LAO_WRITE("focus_depth")}, {LAO_READ("shaded"), LAO_READ("zbuffer"), LAO_READ("surface_nearest")}},
     {"focus_tiles", LAO_PASS_FULLSCREEN, "surface_tiles", 0, LAO_STAGE_COMPOSE, LAO_SCOPE_FRAME, LAO_REPEAT_NONE, NULL, LAO_BLEND_NONE, LAO_DEPTH_NONE, LAO_CULL_NONE, {VSF__SURFACE, {"focus", '=', 1}},
-     {VSF__TILES("focus_tiles")}, {VSF__READ("focus_color")}},
+     {VSF__TILES("focus_tiles")}, {LAO_READ("focus_color")}},
     {"focus_near_tiles", LAO_PASS_FULLSCREEN, "surface_tiles", 1, LAO_STAGE_COMPOSE, LAO_SCOPE_FRAME, LAO_REPEAT_NONE, NULL, LAO_BLEND_NONE, LAO_DEPTH_NONE, LAO_CULL_NONE, {VSF__SURFACE, {"focus", '=', 1}},
      {VSF__TILES("focus_near_tiles")}, {VSF__TILES("focus_tiles")}},
     {"focus_x", LAO_PASS_FULLSCREEN, "surface_blur", 0, LAO_STAGE_COMPOSE, LAO_SCOPE_FRAME, LAO_REPEAT_NONE, NULL, LAO_BLEND_NONE, LAO_DEPTH_NONE, LAO_CULL_NONE, {VSF__SURFACE, {"focus", '=', 1}},
-     {VSF__WRITE("focus_x")}, {VSF__READ("focus_color"), VSF__READ("focus_depth"), VSF__TILES("focus_near_tiles")}},
+     {LAO_WRITE("focus_x")}, {LAO_READ("focus_color"), LAO_READ("focus_depth"), VSF__TILES("focus_near_tiles")}},
     {"focus_y", LAO_PASS_FULLSCREEN, "surface_blur", 1, LAO_STAGE_COMPOSE, LAO_SCOPE_FRAME, LAO_REPEAT_NONE, NULL, LAO_BLEND_NONE, LAO_DEPTH_NONE, LAO_CULL_NONE, {VSF__SURFACE, {"focus", '=', 1}},
-     {VSF__WRITE("focus_blurred")}, {VSF__READ("focus_x"), VSF__READ("focus_depth"), VSF__TILES("focus_near_tiles")}},
+     {LAO_WRITE("focus_blurred")}, {LAO_READ("focus_x"), LAO_READ("focus_depth"), VSF__TILES("focus_near_tiles")}},
     {"focus", LAO_PASS_FULLSCREEN, "surface_effect", 2, LAO_STAGE_COMPOSE, LAO_SCOPE_FRAME, LAO_REPEAT_NONE, NULL, LAO_BLEND_NONE, LAO_DEPTH_NONE, LAO_CULL_NONE, {VSF__SURFACE, {"focus", '=', 1}},
-     {VSF__OTHER("shaded")}, {VSF__READ("shaded"), VSF__READ("zbuffer"), VSF__READ("surface_nearest"), VSF__READ("focus_blurred")}}
+     {LAO_WRITE_OTHER("shaded")}, {LAO_READ("shaded"), LAO_READ("zbuffer"), LAO_READ("surface_nearest"), LAO_READ("focus_blurred")}}
 };
 
 static const lao_setting_row vsf__settings[] = {
-#define VSF__ROW(name, type, minimum, maximum, standard, structural, unit, choices, help) \
-    {#name, LAO_SETTING_##type, minimum, maximum, standard, structural, unit, choices, help},
-    VSF_SETTINGS(VSF__ROW)
-#undef VSF__ROW
+    VSF_SETTINGS(LAO_SETTING_ROW)
 };
 
 static const lao_module vsf__module = {

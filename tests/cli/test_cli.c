@@ -83,6 +83,13 @@ static void write_lines(const char *path, float x, double origin) {
 
 /* ---- words only ------------------------------------------------------------------------- */
 
+static void write_text(const char *path, const char *text) {
+    FILE *file = fopen(path, "wb");
+    assert_non_null(file);
+    assert_true(fputs(text, file) >= 0);
+    assert_int_equal(fclose(file), 0);
+}
+
 static void test_help(void **state) {
     static const char *const lines[] = {"--help",     "help",        "info --help", "render --help",
                                         "compare -h", "help render", "--version"};
@@ -113,6 +120,8 @@ static void test_wrong_usage(void **state) {
     expect_fault(RUN("render --ortho=1 -o x.png"), 2, "--ortho");
     expect_fault(RUN("render --size 0x9 -o x.png"), 2, "--size");
     expect_fault(RUN("render --size 9 -o x.png"), 2, "WxH");
+    expect_fault(RUN("render --size 99999x9 -o x.png"), 2, "1 to 32768");
+    expect_fault(RUN("render -o x.JPEG"), 2, "must end in .png");
     expect_fault(RUN("render --every 1.5 -o x.png"), 2, "--every");
     expect_fault(RUN("render --time 1,5 -o x.png"), 2, "--time");
     expect_fault(RUN("render --time 0x10 -o x.png"), 2, "--time");
@@ -141,7 +150,43 @@ static void test_failures(void **state) {
     expect_fault(RUN("render --camera no.json -o fail.png"), 1, "no.json: ");
     expect_fault(RUN("render fail.vtp --color fb -o fail.png"), 1, "fa");
     expect_fault(RUN("render fail.vtp --bundle b -o fail.png"), 1, "fail.vtp: ");
+    write_lines("fail.trk", 0, 0);
+    expect_fault(RUN("vessel fail.trk -o fail.png"), 1, "lineao render draws it");
+    expect_fault(RUN("surface fail.trk -o fail.png"), 1, "lineao render draws it");
     assert_int_equal(access("fail.png", F_OK), -1);
+    write_text("empty.vtk", "# vtk DataFile Version 3.0\nx\nASCII\nDATASET POLYDATA\n"
+                            "POINTS 0 float\nLINES 0 0\n");
+    program_run run = RUN("render empty.vtk --size 16x16 --ssaa 1 -o empty.png");
+    assert_int_equal(run.code, 0);
+    assert_non_null(strstr(run.err, "lineao: empty.vtk: warning: there are no lines to draw"));
+    program_free(&run);
+}
+
+/* Lines of another unit than mm are drawn as wide as suits them, which is told once; those of a
+ * usual size as ever, and all as --width says. */
+static void test_odd_sizes(void **state) {
+    static const struct {
+        double size;
+        const char *flags, *told; /* NULL: nothing is */
+    } rows[] = {{2, "", "too wide; they are 0.0067 mm"},
+                {2, "--width 0.1", NULL},
+                {150, "", NULL},
+                {3000, "", "too thin; they are 10 mm"}};
+    (void)state;
+    for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
+        char text[160];
+        snprintf(text, sizeof text,
+                 "# vtk DataFile Version 3.0\nx\nASCII\nDATASET POLYDATA\nPOINTS 2 float\n0 0 0 %g "
+                 "0 0\nLINES 1 3\n2 0 1\n",
+                 rows[i].size);
+        write_text("odd.vtk", text);
+        program_run run = RUN("render odd.vtk %s --size 32x32 --ssaa 1 -o odd.png", rows[i].flags);
+        assert_int_equal(run.code, 0);
+        if (rows[i].told)
+            assert_non_null(strstr(run.err, rows[i].told));
+        assert_int_equal(program_lines(run.err), rows[i].told ? 1 : 0);
+        program_free(&run);
+    }
 }
 
 /* Nothing is left where nothing can be written. */
@@ -191,13 +236,6 @@ static void test_info(void **state) {
     run = RUN("info info.vtp");
     assert_non_null(strstr(run.out, "fa (per point)"));
     program_free(&run);
-}
-
-static void write_text(const char *path, const char *text) {
-    FILE *file = fopen(path, "wb");
-    assert_non_null(file);
-    assert_true(fputs(text, file) >= 0);
-    assert_int_equal(fclose(file), 0);
 }
 
 /* The first file of `lineao info ...`; *json is to be deleted. */
@@ -627,27 +665,17 @@ static void test_nothing_left(void **state) {
 
 int main(int argc, char **argv) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_help),
-        cmocka_unit_test(test_wrong_usage),
-        cmocka_unit_test(test_failures),
-        cmocka_unit_test(test_no_folder),
-        cmocka_unit_test(test_interrupt),
-        cmocka_unit_test(test_info),
-        cmocka_unit_test(test_info_tree),
-        cmocka_unit_test(test_info_mesh),
-        cmocka_unit_test(test_flags),
-        cmocka_unit_test(test_flags_of_files),
-        cmocka_unit_test(test_camera),
-        cmocka_unit_test(test_sequence),
-        cmocka_unit_test(test_times),
-        cmocka_unit_test(test_videos),
-        cmocka_unit_test(test_timings),
-        cmocka_unit_test(test_dump),
-        cmocka_unit_test(test_dump_of_directions),
-        cmocka_unit_test(test_compare),
-        cmocka_unit_test(test_both_backends),
-        cmocka_unit_test(test_real_file),
-        cmocka_unit_test(test_nothing_left),
+        cmocka_unit_test(test_help),           cmocka_unit_test(test_wrong_usage),
+        cmocka_unit_test(test_failures),       cmocka_unit_test(test_odd_sizes),
+        cmocka_unit_test(test_no_folder),      cmocka_unit_test(test_interrupt),
+        cmocka_unit_test(test_info),           cmocka_unit_test(test_info_tree),
+        cmocka_unit_test(test_info_mesh),      cmocka_unit_test(test_flags),
+        cmocka_unit_test(test_flags_of_files), cmocka_unit_test(test_camera),
+        cmocka_unit_test(test_sequence),       cmocka_unit_test(test_times),
+        cmocka_unit_test(test_videos),         cmocka_unit_test(test_timings),
+        cmocka_unit_test(test_dump),           cmocka_unit_test(test_dump_of_directions),
+        cmocka_unit_test(test_compare),        cmocka_unit_test(test_both_backends),
+        cmocka_unit_test(test_real_file),      cmocka_unit_test(test_nothing_left),
     };
     if (argc < 2)
         return 2;

@@ -465,6 +465,20 @@ static void looks(void **state) {
     expect_fault(RUN("surface tube.obj --wall-colormap rainbow -o x.png"), 2, "--wall-colormap");
 }
 
+/* A mesh in metres, of which 1.5 mm would show all, gets the brightness of its own curvature; one
+ * of a vessel's size keeps 1.5 mm. */
+static void odd_sizes(void **state) {
+    (void)state;
+    for (int i = 0; i < 2; i++) {
+        write_tube("odd.obj", 0, i ? 1e-3 : 1);
+        expect_ok(RUN("surface odd.obj --size 48x36 --ssaa 1 -o odd.png"));
+        expect_ok(RUN("surface odd.obj --size 48x36 --ssaa 1 --brightness auto -o auto.png"));
+        assert_true(same_files("odd.png", "auto.png") == (i == 1));
+    }
+    expect_ok(RUN("surface odd.obj --size 48x36 --ssaa 1 --brightness 1.5 -o print.png"));
+    assert_false(same_files("odd.png", "print.png"));
+}
+
 /* lineao render --outline: a mesh's silhouette behind and around lines, which stay as they are. */
 static void outlines(void **state) {
     char error[IMAGE_ERROR_SIZE];
@@ -534,11 +548,17 @@ static int leave(void **state) {
 
 int main(int argc, char **argv) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(vertices_of_a_tube), cmocka_unit_test(distances_of_a_tube),
-        cmocka_unit_test(dump_of_a_tube),     cmocka_unit_test(uses),
-        cmocka_unit_test(tree_as_mesh),       cmocka_unit_test(volume_as_mesh),
-        cmocka_unit_test(too_many_triangles), cmocka_unit_test(looks),
-        cmocka_unit_test(outlines),           cmocka_unit_test(faults),
+        cmocka_unit_test(vertices_of_a_tube),
+        cmocka_unit_test(distances_of_a_tube),
+        cmocka_unit_test(dump_of_a_tube),
+        cmocka_unit_test(uses),
+        cmocka_unit_test(tree_as_mesh),
+        cmocka_unit_test(volume_as_mesh),
+        cmocka_unit_test(too_many_triangles),
+        cmocka_unit_test(looks),
+        cmocka_unit_test(outlines),
+        cmocka_unit_test(odd_sizes),
+        cmocka_unit_test(faults),
     };
     program = argc > 1 ? argv[1] : "lineao";
     return cmocka_run_group_tests(tests, enter, leave);

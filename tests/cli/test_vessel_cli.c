@@ -419,7 +419,7 @@ static void test_turn(void **state) {
     (void)state;
     expect_ok(RUN("vessel y.swc --unit mm " SMALL "--style plain --frames 8 -o t%%d.png"));
     for (int frame = 0; frame < 8; frame++) {
-        char path[16];
+        char path[32]; /* an int fits, whatever a compiler makes of the loop */
         pixels p;
         snprintf(path, sizeof path, "t%d.png", frame);
         read_pixels(path, &p);
@@ -702,6 +702,12 @@ static void test_faults(void **state) {
     } rows[] = {
         {"vessel y.swc", "-o out.png", 2},
         {"vessel y.swc y.swc -o a.png", "second", 2},
+        {"vessel y.swc y.swc -o a.png", "lineao render", 2},
+        {"vessel --nodes 0 -o a.png", "a whole number from 1", 2},
+        {"vessel y.swc -o a.jpg", "must end in .png", 2},
+        {"vessel y.swc --target 1,2 -o a.png", "--target: '1,2'", 1},
+        {"vessel y.swc --subtract none.stl -o a.png", "none.stl: is no shape, nor a file", 1},
+        {"vessel y.swc --size 32768x32768 --ssaa 4 -o a.png", "--size: times --ssaa", 1},
         {"vessel y.swc --grid 4 -o a.png", "16..512", 2},
         {"vessel y.swc --grid x -o a.png", "--grid", 2},
         {"vessel y.swc --layout l.txt", ".svg or .json", 2},

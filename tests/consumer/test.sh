@@ -35,9 +35,7 @@ printf '#define LINEAO_IMPLEMENTATION\n#include <lineao.h>\n' >"$scratch/lineao.
 by_hand=$("$scratch/by_hand")
 sources=$(pkg-config --variable=sourcedir lineao)
 for file in lineao_gl lineao_vk; do
-  if [ -e "$sources/$file.c" ]; then
-    "$cc" "${strict[@]}" "${cflags[@]}" -c "$sources/$file.c" -o "$scratch/$file.o"
-  fi
+  "$cc" "${strict[@]}" "${cflags[@]}" -c "$sources/$file.c" -o "$scratch/$file.o"
 done
 
 version=$(pkg-config --modversion lineao)

@@ -6,30 +6,6 @@
 
 core_window core_seen;
 
-static void *host_allocate(void *user, size_t size) {
-    core_host *host = (core_host *)user;
-    void *memory;
-    host->allocations++;
-    if (host->allocations == host->fail_allocation) {
-        host->failures++;
-        return NULL;
-    }
-    memory = malloc(size);
-    if (memory) {
-        memset(memory, 0xa5, size); /* nobody may count on zeros */
-        host->bytes += (long)size;
-        host->blocks++;
-    }
-    return memory;
-}
-
-static void host_release(void *user, void *memory, size_t size) {
-    core_host *host = (core_host *)user;
-    host->bytes -= (long)size; /* so that a wrong size shows up as bytes that are left */
-    host->blocks--;
-    free(memory);
-}
-
 static void host_log(void *user, lao_log_item item, lao_result result, const char *text) {
     core_host *host = (core_host *)user;
     host->logs++;
@@ -37,14 +13,6 @@ static void host_log(void *user, lao_log_item item, lao_result result, const cha
     host->item = item;
     host->result = result;
     snprintf(host->text, sizeof host->text, "%s", text);
-}
-
-lao_allocator core_allocator(core_host *host) {
-    lao_allocator allocator;
-    allocator.allocate = host_allocate;
-    allocator.release = host_release;
-    allocator.user = host;
-    return allocator;
 }
 
 lao_logger core_logger(core_host *host) {

@@ -3,13 +3,10 @@
 #ifndef CORE_HOST_H
 #define CORE_HOST_H
 
-#include "lineao.h"
+#include "lent.h"
 
 typedef struct core_host {
-    long bytes, blocks;       /* alive */
-    uint32_t allocations;     /* so far */
-    uint32_t fail_allocation; /* this one fails; 0: none */
-    uint32_t failures;
+    lent_memory memory;
     uint32_t logs; /* so far */
     uint32_t seen[LAO_LOG_ITEM_COUNT];
     lao_log_item item; /* the last one */
@@ -18,7 +15,6 @@ typedef struct core_host {
 } core_host;
 
 /* All zero is a fresh host. */
-lao_allocator core_allocator(core_host *host);
 lao_logger core_logger(core_host *host);
 
 enum { CORE_BUFFERS = 64, CORE_TEXELS = 256 };

@@ -72,7 +72,7 @@ static void fixture_begin(fixture *f) {
     core_window_clear();
     f->backend = core_backend(0);
     f->desc.backend = &f->backend;
-    f->desc.allocator = core_allocator(&f->host);
+    f->desc.allocator = lent_allocator(&f->host.memory);
     f->desc.logger = core_logger(&f->host);
     assert_int_equal(lao_create(&f->desc, &f->context), LAO_OK);
     fixture_frame(f);
@@ -83,8 +83,8 @@ static void fixture_begin(fixture *f) {
 
 static void fixture_end(fixture *f) {
     lao_destroy(f->context);
-    assert_int_equal(f->host.bytes, 0);
-    assert_int_equal(f->host.blocks, 0);
+    assert_int_equal(f->host.memory.bytes, 0);
+    assert_int_equal(f->host.memory.blocks, 0);
     remember(&f->host);
 }
 
@@ -561,9 +561,9 @@ static int session(core_host *host, uint32_t fail_allocation, uint32_t fail_call
     backend = core_backend(fail_call);
     memset(&desc, 0, sizeof desc);
     desc.backend = &backend;
-    desc.allocator = core_allocator(host);
+    desc.allocator = lent_allocator(&host->memory);
     desc.logger = core_logger(host);
-    host->fail_allocation = fail_allocation;
+    host->memory.fail_allocation = fail_allocation;
     { /* each attempt has its own backend state, so a failing call would fail again */
         uint32_t logs = host->logs;
         lao_result result = lao_create(&desc, &context);
@@ -571,7 +571,7 @@ static int session(core_host *host, uint32_t fail_allocation, uint32_t fail_call
             failures++;
             assert_int_equal(host->logs, logs + 1);
             assert_null(context);
-            assert_int_equal(host->bytes, 0);
+            assert_int_equal(host->memory.bytes, 0);
             backend = core_backend(0);
             assert_ok(lao_create(&desc, &context));
         }
@@ -662,8 +662,8 @@ static int session(core_host *host, uint32_t fail_allocation, uint32_t fail_call
     ATTEMPT(lao_lines_create(context, &set, &a), 1);
     assert_ok(lao_view_destroy(context, view));
     lao_destroy(context);
-    assert_int_equal(host->bytes, 0);
-    assert_int_equal(host->blocks, 0);
+    assert_int_equal(host->memory.bytes, 0);
+    assert_int_equal(host->memory.blocks, 0);
     assert_int_equal(core_seen.buffers_alive, 0);
     remember(host);
     return failures;
@@ -675,7 +675,7 @@ static void memory_gives_out_at_any_allocation(void **state) {
     (void)state;
     assert_int_equal(session(&host, 0, 0), 0);
     assert_int_equal(host.logs, 0);
-    total = host.allocations;
+    total = host.memory.allocations;
     for (n = 1; n <= total; n++) {
         assert_int_equal(session(&host, n, 0), 1);
         assert_int_equal(host.logs, 1);
@@ -714,7 +714,7 @@ static void rendering_allocates_nothing_twice(void **state) {
         prepares = core_seen.prepares;
         assert_ok(lao_render(f.context, &f.frame));
         assert_int_equal(core_seen.prepares, prepares + 1); /* a new structure, made once */
-        allocations = f.host.allocations;
+        allocations = f.host.memory.allocations;
         for (int i = 0; i < 10; i++) {
             settings.strength = (float)i * 0.1f; /* what may change from frame to frame */
             settings.width = 1 + (float)i;
@@ -726,16 +726,16 @@ static void rendering_allocates_nothing_twice(void **state) {
             f.sets[1].settings = i % 2 ? &settings : NULL;
             f.sets[1].settings = NULL;
             assert_ok(lao_render(f.context, &f.frame));
-            assert_int_equal(f.host.allocations, allocations);
+            assert_int_equal(f.host.memory.allocations, allocations);
             assert_int_equal(core_seen.prepares, prepares + 1);
             assert_int_equal(core_seen.parity, (core_seen.executions - 1) & 1);
         }
     }
     assert_ok(
         lao_lines_update(f.context, f.lines, &f.set)); /* other lines are no other structure */
-    allocations = f.host.allocations;
+    allocations = f.host.memory.allocations;
     assert_ok(lao_render(f.context, &f.frame));
-    assert_int_equal(f.host.allocations, allocations);
+    assert_int_equal(f.host.memory.allocations, allocations);
     fixture_end(&f);
 }
 

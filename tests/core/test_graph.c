@@ -1203,8 +1203,8 @@ static void memory_runs_out_anywhere(void **state) {
         lao_graph graph;
         lao_result result;
         memset(&host, 0, sizeof host);
-        allocator = core_allocator(&host);
-        host.fail_allocation = n;
+        allocator = lent_allocator(&host.memory);
+        host.memory.fail_allocation = n;
         planning_begin(&p, module, 2);
         result = lao_graph_make(&module, 1, &allocator, &graph);
         if (result == LAO_OK) {
@@ -1220,10 +1220,10 @@ static void memory_runs_out_anywhere(void **state) {
             lao_plan_free(&allocator, &p.plan);
             lao_graph_free(&allocator, &graph);
         }
-        assert_int_equal(host.bytes, 0);
-        assert_int_equal(host.blocks, 0);
+        assert_int_equal(host.memory.bytes, 0);
+        assert_int_equal(host.memory.blocks, 0);
         planning_end(&p);
-        if (!host.failures) {
+        if (!host.memory.refused) {
             break;
         }
         assert_int_equal(result, LAO_ERROR_OUT_OF_MEMORY);

@@ -173,7 +173,7 @@ static lao_context *context_make(const lao_backend *backend, core_host *host, la
     memset(&desc, 0, sizeof desc);
     memset(frame, 0, sizeof *frame);
     desc.backend = backend;
-    desc.allocator = core_allocator(host);
+    desc.allocator = lent_allocator(&host->memory);
     desc.logger = core_logger(host);
     desc.modules = modules;
     desc.module_count = 1;
@@ -265,7 +265,7 @@ static void opengl_gives_the_bits_of_c(void **state) {
     has_gl = 1;
     compare(other, moved, 0, "GL, moved by the second pass");
     lao_destroy(context);
-    assert_int_equal(host.bytes, 0);
+    assert_int_equal(host.memory.bytes, 0);
     host_gl_close(gl);
 }
 
@@ -301,7 +301,7 @@ static void vulkan_gives_the_bits_of_c(void **state) {
         }
         compare(other, moved, 0, "Vulkan, moved by the second pass");
         lao_destroy(context);
-        assert_int_equal(host.bytes, 0);
+        assert_int_equal(host.memory.bytes, 0);
         host_vk_close(vk);
     }
 #else

@@ -149,7 +149,7 @@ static void begin(fixture *f) {
     probe_fill(&f->probe);
     f->backend = core_backend(0);
     f->desc.backend = &f->backend;
-    f->desc.allocator = core_allocator(&f->host);
+    f->desc.allocator = lent_allocator(&f->host.memory);
     f->desc.logger = core_logger(&f->host);
     f->desc.modules = f->probe.modules;
     f->desc.module_count = 1;
@@ -170,7 +170,7 @@ static void begin(fixture *f) {
 
 static void end(fixture *f) {
     lao_destroy(f->context);
-    assert_int_equal(f->host.bytes, 0);
+    assert_int_equal(f->host.memory.bytes, 0);
     assert_int_equal(core_seen.buffers_alive, 0);
 }
 
@@ -549,7 +549,7 @@ static void nothing_is_left_of_a_failure(void **state) {
         uint32_t alive;
         begin(&f);
         alive = core_seen.buffers_alive;
-        f.host.fail_allocation = f.host.allocations + n;
+        f.host.memory.fail_allocation = f.host.memory.allocations + n;
         if (lao_object_create(f.context, &f.source, &more) != LAO_OK) {
             failures++;
             assert_int_equal(f.host.result, LAO_ERROR_OUT_OF_MEMORY);

@@ -106,7 +106,7 @@ static void begin_in(fixture *f, uint32_t line_count, uint32_t length, uint32_t 
     f->backend.buffer_create = keep_buffer;
     f->backend.execute = keep_draws;
     desc.backend = &f->backend;
-    desc.allocator = core_allocator(&f->host);
+    desc.allocator = lent_allocator(&f->host.memory);
     desc.logger = core_logger(&f->host);
     assert_int_equal(lao_create(&desc, &f->context), LAO_OK);
     assert_int_equal(lao_view_create(f->context, &size, &f->frame.view), LAO_OK);
@@ -148,7 +148,7 @@ static void draw(fixture *f, double time) {
 
 static void end(fixture *f) {
     lao_destroy(f->context);
-    assert_int_equal(f->host.bytes, 0);
+    assert_int_equal(f->host.memory.bytes, 0);
     free(f->points);
     free(f->times);
     free(f->offsets);
@@ -411,14 +411,14 @@ static void memory_runs_out(void **state) {
     begin(&f, 3, 10);
     for (;; n++) {
         lao_lines lines = {0};
-        f.host.fail_allocation = f.host.allocations + n;
+        f.host.memory.fail_allocation = f.host.memory.allocations + n;
         if (lao_lines_create(f.context, &f.desc, &lines) == LAO_OK)
             break;
         assert_int_equal(f.host.result, LAO_ERROR_OUT_OF_MEMORY);
         assert_int_equal(lines.id, 0);
         failed++;
     }
-    f.host.fail_allocation = 0;
+    f.host.memory.fail_allocation = 0;
     assert_true(failed >= 7); /* set, points, colors, chunks, bins, order, groups */
     end(&f);
 }

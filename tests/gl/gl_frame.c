@@ -156,20 +156,6 @@ static const lao_pass_row rows[GL_FRAME_STEPS] = {
 
 /* ----------------------------------------------------------------------------------------- core */
 
-static void *core_allocate(void *user, size_t size) {
-    gl_frame_core *core = (gl_frame_core *)user;
-    if (++core->allocations == core->fail_allocation)
-        return NULL;
-    core->bytes += (long)size;
-    return malloc(size);
-}
-
-static void core_release(void *user, void *memory, size_t size) {
-    gl_frame_core *core = (gl_frame_core *)user;
-    core->bytes -= (long)size;
-    free(memory);
-}
-
 static void core_report(void *context, lao_log_item item, const char *detail) {
     gl_frame_core *core = (gl_frame_core *)context;
     core->logs++;
@@ -179,9 +165,7 @@ static void core_report(void *context, lao_log_item item, const char *detail) {
 
 void gl_frame_core_init(gl_frame_core *core) {
     memset(core, 0, sizeof *core);
-    core->host.allocator.allocate = core_allocate;
-    core->host.allocator.release = core_release;
-    core->host.allocator.user = core;
+    core->host.allocator = lent_allocator(&core->memory);
     core->host.report = core_report;
     core->host.context = core;
     core->host.settings_size = GL_FRAME_SETTINGS * sizeof(float);

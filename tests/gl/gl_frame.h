@@ -4,7 +4,7 @@
 #ifndef GL_FRAME_H
 #define GL_FRAME_H
 
-#include "lineao.h"
+#include "lent.h"
 
 enum {
     GL_FRAME_SIZE = 24,
@@ -16,13 +16,12 @@ enum {
     GL_FRAME_SETTINGS = 256 /* floats of a block: as many as any shader wants */
 };
 
-/* What the core would be: allocator with fault injection, log. */
+/* What the core would be: memory, log. */
 typedef struct gl_frame_core {
     lao_host host;
-    lao_graph graph;     /* its number of modules */
-    int fail_allocation; /* the n-th fails; 0: none */
-    int allocations, logs;
-    long bytes; /* alive */
+    lao_graph graph; /* its number of modules */
+    lent_memory memory;
+    int logs;
     lao_log_item item;
     char text[2048];
 } gl_frame_core;

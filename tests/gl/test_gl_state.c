@@ -385,7 +385,7 @@ static void end_life(life *it) {
     gl_frame_lines_destroy(&it->frame, &it->backend, it->self);
     it->backend.detach(it->self);
     assert_int_equal(it->core.logs, 0);
-    assert_int_equal(it->core.bytes, 0);
+    assert_int_equal(it->core.memory.bytes, 0);
 }
 
 static void set_target(life *it, GLuint name, uint32_t kind, uint32_t flags) {

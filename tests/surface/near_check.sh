@@ -10,29 +10,15 @@ here=$(dirname "$(readlink -f "$0")")
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
 
-skip() {
-  echo "near_check: skipped: $1"
-  exit 0
-}
-
-have() { /usr/bin/python3 -c 'import scipy.spatial' 2>/dev/null; }
-
-install() {
-  local apt=(env DEBIAN_FRONTEND=noninteractive apt-get -qq -o DPkg::Lock::Timeout=300 -o Dpkg::Use-Pty=0)
-  [ "$(id -u)" = 0 ] && command -v apt-get >/dev/null || return 1
-  { "${apt[@]}" update && "${apt[@]}" install -y --no-install-recommends python3-scipy; } >"$work/apt" 2>&1 </dev/null
-}
-
-[ -x /usr/bin/python3 ] || skip "there is no /usr/bin/python3"
-if ! have; then
-  install || skip "the package python3-scipy is missing and could not be installed"
-  have || skip "SciPy does not load: $(/usr/bin/python3 -c 'import scipy.spatial' 2>&1 | tail -n 1)"
-fi
+# shellcheck source-path=SCRIPTDIR source=../../bench/peer.sh
+. "$here/../../bench/peer.sh"
+scipy() { "$peer_python" -c 'import scipy.spatial'; }
+peer_need scipy python3-scipy
 
 "$bench" --steps 1 --export "$work" --least 50 >"$work/ours.json"
-reach=$(/usr/bin/python3 -c 'import json,sys; print(json.load(open(sys.argv[1]))["reach_ms"])' "$work/ours.json")
-/usr/bin/python3 "$here/near_peer.py" "$work" "$reach" >"$work/peer.json"
-/usr/bin/python3 - "$work/ours.json" "$work/peer.json" <<'END'
+reach=$("$peer_python" -c 'import json,sys; print(json.load(open(sys.argv[1]))["reach_ms"])' "$work/ours.json")
+"$peer_python" "$here/near_peer.py" "$work" "$reach" >"$work/peer.json"
+"$peer_python" - "$work/ours.json" "$work/peer.json" <<'END'
 import json
 import sys
 ours, peer = (json.load(open(name)) for name in sys.argv[1:3])

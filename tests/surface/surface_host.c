@@ -7,70 +7,19 @@
 #include <string.h>
 #include <cmocka.h>
 
-static void *take(void *user, size_t size) {
-    surface_host *host = (surface_host *)user;
-    void *memory;
-    if (++host->takes == host->fail_at)
-        return NULL;
-    memory = malloc(size);
-    if (memory) {
-        memset(memory, 0xa5, size); /* nothing may rely on zeros */
-        host->bytes += size;
-    }
-    return memory;
-}
-
-static void give(void *user, void *memory, size_t size) {
-    surface_host *host = (surface_host *)user;
-    host->bytes -= size;
-    free(memory);
-}
-
 static void keep_log(void *user, vsf_log_item item, lao_result result, const char *text) {
-    surface_host *host = (surface_host *)user;
-    host->seen[item]++;
-    if (result == LAO_OK) {
-        host->warnings++;
-        snprintf(host->warning, sizeof host->warning, "%s", text);
-    } else {
-        host->failures++;
-        host->item = item;
-        snprintf(host->text, sizeof host->text, "%s", text);
-    }
+    lent_log((lent_host *)user, (uint32_t)item, result, text);
 }
 
-static void run(void *user, uint32_t count, void (*fn)(void *arg, uint32_t index), void *arg) {
-    const surface_host *host = (const surface_host *)user;
-    for (uint32_t i = 0; i < count; i++)
-        fn(arg, host->backwards ? count - 1 - i : i);
-}
-
-static int progress(void *user, uint64_t done, uint64_t total) {
-    surface_host *host = (surface_host *)user;
-    assert_true(done <= total);
-    host->done = done;
-    host->total = total;
-    return ++host->progress_calls == host->cancel_at;
-}
-
-vsf_host surface_host_make(surface_host *host) {
+vsf_host surface_host_make(lent_host *host) {
     vsf_host h;
     memset(host, 0, sizeof *host);
     memset(&h, 0, sizeof h);
-    h.allocator.allocate = take;
-    h.allocator.release = give;
-    h.allocator.user = host;
-    h.job.run = run;
-    h.job.progress = progress;
-    h.job.user = host;
+    h.allocator = lent_allocator(&host->memory);
+    h.job = lent_job(host);
     h.log = keep_log;
     h.user = host;
     return h;
-}
-
-double surface_between(uint32_t *seed, double low, double high) {
-    *seed = *seed * 1664525u + 1013904223u;
-    return low + (high - low) * (double)(lao_hash(*seed) >> 8) / 16777216.0;
 }
 
 static surface_shape shape_make(uint32_t vertices, uint32_t triangles) {

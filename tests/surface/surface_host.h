@@ -3,25 +3,11 @@
 #ifndef SURFACE_HOST_H
 #define SURFACE_HOST_H
 
+#include "lent.h"
 #include "vesselsurface.h"
 
-typedef struct surface_host {
-    uint64_t bytes;              /* taken now */
-    uint32_t takes, fail_at;     /* allocations so far; the n-th fails, 0: none */
-    uint32_t failures, warnings; /* logged */
-    vsf_log_item item;           /* the last failure */
-    char text[320], warning[320];
-    uint32_t seen[VSF_LOG_ITEM_COUNT];  /* how often each item was logged */
-    uint32_t cancel_at, progress_calls; /* progress cancels at the n-th call, 0: never */
-    uint64_t done, total;
-    int backwards; /* the job runs its items last to first */
-} surface_host;
-
 /* Clears `host` and returns what calls take. */
-vsf_host surface_host_make(surface_host *host);
-
-/* In [low, high), from a state that the call moves on. */
-double surface_between(uint32_t *seed, double low, double high);
+vsf_host surface_host_make(lent_host *host);
 
 /* Arrays of a mesh in the making: shared vertices, outward, counter-clockwise. */
 typedef struct surface_shape {

@@ -16,7 +16,7 @@
 #include <string.h>
 #include <cmocka.h>
 
-static vsf_mesh mesh_of(const scene_surface *surface, surface_host *host) {
+static vsf_mesh mesh_of(const scene_surface *surface, lent_host *host) {
     vsf_host h = surface_host_make(host);
     vsf_mesh_desc desc;
     vsf_mesh mesh;
@@ -36,7 +36,7 @@ static void surfaces_are_whole(void **state) {
     assert_int_equal(count, 4);
     for (uint32_t i = 0; i < count; i++) {
         scene_surface surface, coarse, again;
-        surface_host host;
+        lent_host host;
         vsf_mesh mesh;
         double spacing;
         assert_non_null(scene_surface_help(names[i]));
@@ -73,7 +73,7 @@ static void the_neck_is_concave_and_the_bleb_convex(void **state) {
     /* what the shading must show: nearest vertices to the bleb's tip and to the neck */
     static const float places[2][3] = {{-10.3f, -0.4f, 15.3f}, {-1.2f, 6.0f, 6.6f}};
     scene_surface surface;
-    surface_host host;
+    lent_host host;
     vsf_mesh mesh;
     vsf_smooth_desc smooth = {0, 0, 0, 1};
     float *k;

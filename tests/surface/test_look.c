@@ -156,7 +156,7 @@ static void layers_compose_front_to_back(void **state) {
         lao_v4 sum = none;
         lao_v4 layers[8];
         for (int k = 0; k < 8; k++) {
-            float c = (float)surface_between(&seed, 0, 1), o = (float)surface_between(&seed, 0, 1);
+            float c = (float)lent_between(&seed, 0, 1), o = (float)lent_between(&seed, 0, 1);
             layers[k] = vsf_premultiply(lao_v3_make(c, c, c), o);
             r = (double)c * (double)o + r * (1 - (double)o);
             a = (double)o + a * (1 - (double)o);

@@ -257,7 +257,7 @@ static void rings_are_the_printed_formulas(void **state) {
     uint32_t seed = 8;
     (void)state;
     for (uint32_t i = 0; i < 3 * shape.vertex_count; i++) /* obtuse, uneven triangles */
-        shape.positions[i] += (float)surface_between(&seed, -0.35, 0.35);
+        shape.positions[i] += (float)lent_between(&seed, -0.35, 0.35);
     shape.triangle_count -= 40; /* and a border */
     {
         fixture f = fixture_make(shape, 0, 0);
@@ -369,7 +369,7 @@ static void degenerate_eyes_and_vertices(void **state) {
     static const float points[] = {0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 0, 5, 5, 5};
     static const uint32_t triangles[] = {0, 1, 2, 1, 3, 2}; /* a leaf with two sides: normals 0 */
     const float at_vertex[4] = {0, 0, 0, 1}, bad[4] = {NAN, 0, 0, 1}, half[4] = {0, 0, 0, 0.5f};
-    surface_host host;
+    lent_host host;
     vsf_host h = surface_host_make(&host);
     vsf_mesh_desc desc;
     vsf_mesh mesh;
@@ -392,7 +392,7 @@ static void degenerate_eyes_and_vertices(void **state) {
     assert_int_equal(vsf_measure(&h, NULL, half, 0, s), LAO_ERROR_INVALID_ARGUMENT);
     vsf_buffers_free(&buffers);
     vsf_mesh_free(&mesh);
-    assert_int_equal(host.bytes, 0);
+    assert_int_equal(host.memory.bytes, 0);
 }
 
 static void buffers_describe_an_object(void **state) {
@@ -431,7 +431,7 @@ static void ring_numbers_survive_floats(void **state) {
 
 static void order_of_work_does_not_matter(void **state) {
     fixture f = fixture_make(surface_torus(5, 2, 150, 100), 0, 0);
-    surface_host host;
+    lent_host host;
     vsf_host h = surface_host_make(&host);
     vsf_buffers other;
     const float eye[4] = {9, 5, 6, 1};
@@ -447,7 +447,7 @@ static void order_of_work_does_not_matter(void **state) {
     host.cancel_at = 1;
     assert_int_equal(vsf_measure(&h, &other, eye, 0, s), LAO_ERROR_NOT_READY);
     vsf_buffers_free(&other);
-    assert_int_equal(host.bytes, 0);
+    assert_int_equal(host.memory.bytes, 0);
     free(s);
     fixture_free(&f);
 }

@@ -36,9 +36,9 @@ static void gradients_of_linear_functions(void **state) {
     for (int i = 0; i < 1000; i++) {
         double q[3][3], a[3], l[3], e1[3], e2[3], n[3], an = 0, nn = 0;
         for (int k = 0; k < 3; k++) {
-            a[k] = surface_between(&seed, -2, 2);
+            a[k] = lent_between(&seed, -2, 2);
             for (int j = 0; j < 3; j++)
-                q[j][k] = surface_between(&seed, -10, 10);
+                q[j][k] = lent_between(&seed, -10, 10);
         }
         for (int j = 0; j < 3; j++)
             l[j] = a[0] * q[j][0] + a[1] * q[j][1] + a[2] * q[j][2];
@@ -81,7 +81,7 @@ static void mixed_areas(void **state) {
     for (int i = 0; i < 100000; i++) {
         double p[3][3], e1[3], e2[3], c[3], area;
         for (int k = 0; k < 9; k++)
-            p[k / 3][k % 3] = surface_between(&seed, -1, 1);
+            p[k / 3][k % 3] = lent_between(&seed, -1, 1);
         for (int k = 0; k < 3; k++) {
             e1[k] = p[1][k] - p[0][k];
             e2[k] = p[2][k] - p[0][k];
@@ -102,9 +102,9 @@ static void least_turns(void **state) {
     for (int i = 0; i < 1000; i++) {
         double a[3], b[3], v[3], t[3], la = 0, lb = 0, va = 0, tb = 0, vv = 0, tt = 0;
         for (int k = 0; k < 3; k++) {
-            a[k] = surface_between(&seed, -1, 1);
-            b[k] = surface_between(&seed, -1, 1);
-            v[k] = surface_between(&seed, -1, 1);
+            a[k] = lent_between(&seed, -1, 1);
+            b[k] = lent_between(&seed, -1, 1);
+            v[k] = lent_between(&seed, -1, 1);
             la += a[k] * a[k];
             lb += b[k] * b[k];
         }
@@ -162,7 +162,7 @@ static void check_topology(const vsf_mesh *mesh) {
 
 static void welds_what_is_in_one_place(void **state) {
     surface_shape shape = surface_sphere(2, 3), loose;
-    surface_host host;
+    lent_host host;
     vsf_host h = surface_host_make(&host);
     vsf_mesh_desc desc;
     vsf_mesh mesh;
@@ -212,7 +212,7 @@ static void welds_what_is_in_one_place(void **state) {
     assert_int_equal(mesh.info.open_edges, n);
     assert_int_equal(host.seen[VSF_LOG_EDGES_OPEN], 1);
     vsf_mesh_free(&mesh);
-    assert_int_equal(host.bytes, 0);
+    assert_int_equal(host.memory.bytes, 0);
     free(loose.positions);
     free(loose.triangles);
     surface_shape_free(&shape);
@@ -220,7 +220,7 @@ static void welds_what_is_in_one_place(void **state) {
 
 static void turns_what_runs_the_wrong_way(void **state) {
     surface_shape shape = surface_torus(5, 1, 24, 12);
-    surface_host host;
+    lent_host host;
     vsf_host h = surface_host_make(&host);
     vsf_mesh_desc desc = surface_describe(&shape);
     vsf_mesh right, mesh;
@@ -231,7 +231,7 @@ static void turns_what_runs_the_wrong_way(void **state) {
     assert_true(right.info.volume > 0);
     for (uint32_t t = 0; t < shape.triangle_count; t++) { /* some */
         uint32_t *c = shape.triangles + 3 * t, v = c[0];
-        if (surface_between(&seed, 0, 1) < 0.3) {
+        if (lent_between(&seed, 0, 1) < 0.3) {
             c[0] = c[1];
             c[1] = v;
             turned++;
@@ -276,7 +276,7 @@ static void turns_what_runs_the_wrong_way(void **state) {
     vsf_mesh_free(&mesh);
     vsf_mesh_free(&right);
     surface_shape_free(&shape);
-    assert_int_equal(host.bytes, 0);
+    assert_int_equal(host.memory.bytes, 0);
 }
 
 static void names_what_it_cannot_mend(void **state) {
@@ -287,7 +287,7 @@ static void names_what_it_cannot_mend(void **state) {
                                    0,  21, 0, 0, 20, 1,   0, 21, 1, 1,  22, 0,  1};
     static const uint32_t triangles[] = {0, 1, 2, 0,  1, 3,  0,  1,  4,  0,  1,  6,  0, 1,  7, 2, 2,
                                          1, 8, 9, 10, 9, 10, 11, 10, 11, 12, 11, 12, 8, 12, 8, 9};
-    surface_host host;
+    lent_host host;
     vsf_host h = surface_host_make(&host);
     vsf_mesh_desc desc;
     vsf_mesh mesh;
@@ -324,14 +324,14 @@ static void names_what_it_cannot_mend(void **state) {
     assert_true(mesh.info.bounds[1][2] == 1.0f);
     check_topology(&mesh);
     vsf_mesh_free(&mesh);
-    assert_int_equal(host.bytes, 0);
+    assert_int_equal(host.memory.bytes, 0);
 }
 
 static void refuses_what_is_no_mesh(void **state) {
     static const float points[] = {0, 0, 0, 1, 0, 0, 0, 1, 0};
     static const uint32_t good[] = {0, 1, 2}, bad[] = {0, 1, 3}, flat[] = {0, 1, 1};
     vsf_attribute attribute = {NULL, 1, points};
-    surface_host host;
+    lent_host host;
     vsf_host h = surface_host_make(&host);
     vsf_mesh_desc desc;
     vsf_mesh mesh;
@@ -369,7 +369,7 @@ static void refuses_what_is_no_mesh(void **state) {
     for (size_t i = 0; i < sizeof mesh; i++)
         assert_int_equal(((unsigned char *)&mesh)[i], 7); /* untouched */
     assert_int_equal(host.failures, 7);
-    assert_int_equal(host.bytes, 0);
+    assert_int_equal(host.memory.bytes, 0);
 }
 
 static void keeps_attributes_and_given_normals(void **state) {
@@ -435,7 +435,7 @@ static void smoothing_has_its_transfer(void **state) {
 
 static void smoothing_keeps_volume_planes_and_borders(void **state) {
     surface_shape sphere = surface_sphere(10, 4), plane = surface_saddle(0, 5, 20);
-    surface_host host;
+    lent_host host;
     vsf_host h = surface_host_make(&host);
     vsf_mesh mesh = surface_build(&sphere, 0, 0), copy;
     vsf_mesh_desc desc;
@@ -447,7 +447,7 @@ static void smoothing_keeps_volume_planes_and_borders(void **state) {
     check_topology(&mesh);
     vsf_mesh_free(&mesh);
     for (uint32_t i = 0; i < 3 * sphere.vertex_count; i++) /* noise goes */
-        sphere.positions[i] *= (float)surface_between(&seed, 0.98, 1.02);
+        sphere.positions[i] *= (float)lent_between(&seed, 0.98, 1.02);
     mesh = surface_build(&sphere, 0, 0);
     rough = mesh.info.area;
     host.backwards = 1;
@@ -461,7 +461,7 @@ static void smoothing_keeps_volume_planes_and_borders(void **state) {
     for (uint32_t i = 0; i < 400; i++) { /* inner points of a plane move in it only */
         uint32_t x = i % 20, y = i / 20;
         if (x % 19 && y % 19)
-            plane.positions[3 * i] += (float)surface_between(&seed, -0.1, 0.1);
+            plane.positions[3 * i] += (float)lent_between(&seed, -0.1, 0.1);
         plane.positions[3 * i + 2] = 0.5f;
     }
     desc = surface_describe(&plane);
@@ -532,7 +532,7 @@ static void smoothing_takes_no_negative_weight(void **state) {
 
 static void smoothing_refuses_and_stops(void **state) {
     surface_shape sphere = surface_sphere(1, 1);
-    surface_host host;
+    lent_host host;
     vsf_host h = surface_host_make(&host);
     vsf_mesh mesh = surface_build(&sphere, 0, 0);
     vsf_smooth_desc desc = {1, 0.5, -0.4, 0};
@@ -546,7 +546,7 @@ static void smoothing_refuses_and_stops(void **state) {
     host.cancel_at = 10;
     assert_int_equal(vsf_mesh_smooth(&h, &mesh, NULL), LAO_ERROR_NOT_READY);
     assert_memory_equal(mesh.positions, sphere.positions, 12 * mesh.vertex_count);
-    assert_int_equal(host.bytes, 0);
+    assert_int_equal(host.memory.bytes, 0);
     vsf_mesh_free(&mesh);
     surface_shape_free(&sphere);
 }
@@ -660,7 +660,7 @@ static void decimation_keeps_the_shape(void **state) {
 
 static void decimation_of_planes_and_faults(void **state) {
     surface_shape plane = surface_saddle(0, 2, 40);
-    surface_host host;
+    lent_host host;
     vsf_host h = surface_host_make(&host);
     vsf_mesh mesh = surface_build(&plane, 0, 0), coarser;
     (void)state;
@@ -677,7 +677,7 @@ static void decimation_of_planes_and_faults(void **state) {
     host.cancel_at = 3;
     assert_int_equal(vsf_mesh_decimate(&h, &mesh, 100, &coarser), LAO_ERROR_NOT_READY);
     assert_int_equal(host.item, VSF_LOG_CANCELLED);
-    assert_int_equal(host.bytes, 0);
+    assert_int_equal(host.memory.bytes, 0);
     vsf_mesh_free(&mesh);
     surface_shape_free(&plane);
 }
@@ -689,7 +689,7 @@ static void survives_every_failed_allocation(void **state) {
     vsf_mesh_desc desc = surface_describe(&shape);
     (void)state;
     for (uint32_t n = 1;; n++) {
-        surface_host host;
+        lent_host host;
         vsf_host h = surface_host_make(&host);
         vsf_mesh mesh, finer, coarser;
         vsf_buffers buffers;
@@ -701,7 +701,7 @@ static void survives_every_failed_allocation(void **state) {
         memset(&coarser, 0, sizeof coarser);
         memset(&buffers, 0, sizeof buffers);
         memset(&lines, 0, sizeof lines);
-        host.fail_at = n;
+        host.memory.fail_allocation = n;
         result = vsf_mesh_build(&h, &desc, &mesh);
         if (result == LAO_OK)
             result = vsf_mesh_smooth(&h, &mesh, NULL);
@@ -719,7 +719,7 @@ static void survives_every_failed_allocation(void **state) {
         vsf_mesh_free(&coarser);
         vsf_mesh_free(&finer);
         vsf_mesh_free(&mesh);
-        assert_int_equal(host.bytes, 0);
+        assert_int_equal(host.memory.bytes, 0);
         if (result == LAO_OK) {
             assert_true(n > 10);
             break;
@@ -734,7 +734,7 @@ static void survives_every_failed_allocation(void **state) {
 static void cancels_and_ignores_the_order_of_work(void **state) {
     surface_shape shape = surface_torus(5, 2, 200, 100);
     vsf_mesh_desc desc = surface_describe(&shape);
-    surface_host host;
+    lent_host host;
     vsf_host h = surface_host_make(&host);
     vsf_mesh serial, mesh;
     (void)state;
@@ -750,7 +750,7 @@ static void cancels_and_ignores_the_order_of_work(void **state) {
         host.cancel_at = n;
         assert_int_equal(vsf_mesh_build(&h, &desc, &mesh), LAO_ERROR_NOT_READY);
         assert_int_equal(host.item, VSF_LOG_CANCELLED);
-        assert_int_equal(host.bytes, 0);
+        assert_int_equal(host.memory.bytes, 0);
     }
     vsf_mesh_free(&serial);
     surface_shape_free(&shape);
@@ -761,7 +761,7 @@ static void a_fan_of_many_triangles(void **state) {
     const uint32_t n = 70000;
     float *points = (float *)malloc(3 * sizeof(float) * (n + 1));
     uint32_t *triangles = (uint32_t *)malloc(3 * sizeof(uint32_t) * n);
-    surface_host host;
+    lent_host host;
     vsf_host h = surface_host_make(&host);
     vsf_mesh_desc desc;
     vsf_mesh mesh;
@@ -787,14 +787,14 @@ static void a_fan_of_many_triangles(void **state) {
     assert_int_equal(host.item, VSF_LOG_MESH_DEVICE);
     assert_non_null(strstr(host.text, "decimate it"));
     vsf_mesh_free(&mesh);
-    assert_int_equal(host.bytes, 0);
+    assert_int_equal(host.memory.bytes, 0);
     free(points);
     free(triangles);
 }
 
 static void says_what_a_device_cannot_take(void **state) {
     surface_shape shape = surface_torus(5, 2, 100, 50);
-    surface_host host;
+    lent_host host;
     vsf_host h = surface_host_make(&host);
     vsf_mesh mesh = surface_build(&shape, 0, 0);
     vsf_buffers buffers;
@@ -802,10 +802,10 @@ static void says_what_a_device_cannot_take(void **state) {
     assert_int_equal(vsf_buffers_make(&h, &mesh, 29999, &buffers), LAO_ERROR_UNSUPPORTED);
     assert_non_null(strstr(host.text, "10000 triangles need a buffer of 30000 texels, the device "
                                       "has 29999; about 9999 triangles would fit"));
-    assert_int_equal(host.takes, 0);
+    assert_int_equal(host.memory.allocations, 0);
     assert_int_equal(vsf_buffers_make(&h, &mesh, 30000, &buffers), LAO_OK);
     vsf_buffers_free(&buffers);
-    assert_int_equal(host.bytes, 0);
+    assert_int_equal(host.memory.bytes, 0);
     vsf_mesh_free(&mesh);
     surface_shape_free(&shape);
 }

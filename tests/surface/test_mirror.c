@@ -120,7 +120,7 @@ static void surface_make(void) {
     surface_shape shape = surface_torus(5, 2, 120, 60);
     uint32_t seed = 20;
     for (uint32_t i = 0; i < 3 * shape.vertex_count; i++)
-        shape.positions[i] += (float)surface_between(&seed, -0.05, 0.05);
+        shape.positions[i] += (float)lent_between(&seed, -0.05, 0.05);
     shape.triangle_count -= 500;
     mesh = surface_build(&shape, 0, 0);
     assert_int_equal(vsf_buffers_make(NULL, &mesh, 0, &buffers), LAO_OK);

@@ -141,21 +141,21 @@ static scene scene_make(uint32_t lines, uint32_t per_line, uint32_t vertices, ui
     for (uint32_t i = 0; i <= lines; i++)
         s.offsets[i] = i * per_line;
     for (uint32_t i = 0; i < lines; i++) {
-        double at[3], time = surface_between(&seed, -100, 500);
+        double at[3], time = lent_between(&seed, -100, 500);
         for (int k = 0; k < 3; k++)
-            at[k] = surface_between(&seed, -50, 50);
+            at[k] = lent_between(&seed, -50, 50);
         for (uint32_t j = 0; j < per_line; j++) {
             uint32_t n = i * per_line + j;
             for (uint32_t k = 0; k < 3; k++) {
-                at[k] += surface_between(&seed, -2, 2);
+                at[k] += lent_between(&seed, -2, 2);
                 s.p[3 * n + k] = (float)at[k];
             }
             s.t[n] = (float)time;
-            time += surface_between(&seed, -1, 12); /* a few run backward in time, or stand */
+            time += lent_between(&seed, -1, 12); /* a few run backward in time, or stand */
         }
     }
     for (uint32_t i = 0; i < 3 * vertices; i++)
-        s.v[i] = (float)surface_between(&seed, -60, 60);
+        s.v[i] = (float)lent_between(&seed, -60, 60);
     s.p[3 * (per_line / 2)] = NAN; /* interrupts the first line */
     s.t[2 * per_line - 1] = INFINITY;
     s.v[3] = NAN;
@@ -324,7 +324,7 @@ static void updates_are_like_new(void **state) {
     (void)state;
     for (uint32_t flags = 0; flags <= VSF_NEAR_HALF; flags += VSF_NEAR_HALF) {
         vsf_near_desc desc = scene_describe(&s);
-        surface_host host;
+        lent_host host;
         vsf_host h = surface_host_make(&host);
         vsf_near n, fresh;
         desc.flags = flags;
@@ -344,7 +344,7 @@ static void updates_are_like_new(void **state) {
         assert_int_equal(vsf_near_update(&h, &n, 77), LAO_ERROR_NOT_READY);
         assert_memory_equal(&n, &fresh, sizeof n); /* the old table stays */
         vsf_near_free(&n);
-        assert_int_equal(host.bytes, 0);
+        assert_int_equal(host.memory.bytes, 0);
     }
     scene_free(&s);
 }
@@ -410,7 +410,7 @@ static void halves_are_near(void **state) {
 static void order_of_work_does_not_matter(void **state) {
     scene s = scene_make(60, 40, 3000, 17);
     vsf_near_desc desc = scene_describe(&s);
-    surface_host host;
+    lent_host host;
     vsf_host h = surface_host_make(&host);
     vsf_near a, b;
     (void)state;
@@ -421,13 +421,13 @@ static void order_of_work_does_not_matter(void **state) {
     assert_int_equal(host.done, host.total);
     vsf_near_free(&a);
     vsf_near_free(&b);
-    assert_int_equal(host.bytes, 0);
+    assert_int_equal(host.memory.bytes, 0);
     scene_free(&s);
 }
 
 static void refuses_and_survives(void **state) {
     scene s = scene_make(20, 20, 100, 18);
-    surface_host host;
+    lent_host host;
     vsf_host h = surface_host_make(&host);
     vsf_near_desc good = scene_describe(&s), desc = good;
     vsf_near n;
@@ -458,13 +458,13 @@ static void refuses_and_survives(void **state) {
     for (uint32_t i = 1;; i++) {
         lao_result result;
         h = surface_host_make(&host);
-        host.fail_at = i;
+        host.memory.fail_allocation = i;
         result = vsf_near_make(&h, &good, &n);
         if (result == LAO_OK) {
             assert_true(i > 15);
             vsf_near_free(&n);
         }
-        assert_int_equal(host.bytes, 0);
+        assert_int_equal(host.memory.bytes, 0);
         if (result == LAO_OK)
             break;
         assert_int_equal(result, LAO_ERROR_OUT_OF_MEMORY);
@@ -473,7 +473,7 @@ static void refuses_and_survives(void **state) {
     h = surface_host_make(&host);
     host.cancel_at = 4;
     assert_int_equal(vsf_near_make(&h, &good, &n), LAO_ERROR_NOT_READY);
-    assert_int_equal(host.bytes, 0);
+    assert_int_equal(host.memory.bytes, 0);
     scene_free(&s);
 }
 

@@ -58,11 +58,11 @@ typedef struct cone {
 } cone;
 static cone random_cone(uint32_t *seed) {
     cone c;
-    double size = vessel_between(seed, 0.1, 30);
-    int kind = (int)vessel_between(seed, 0, 8);
+    double size = lent_between(seed, 0.1, 30);
+    int kind = (int)lent_between(seed, 0, 8);
     lao_v3 p = vessel_point(seed, size), q = vessel_point(seed, size);
-    c.a = lao_v4_make(p.x, p.y, p.z, (float)vessel_between(seed, 0, 0.6 * size));
-    c.b = lao_v4_make(q.x, q.y, q.z, (float)vessel_between(seed, 0, 0.6 * size));
+    c.a = lao_v4_make(p.x, p.y, p.z, (float)lent_between(seed, 0, 0.6 * size));
+    c.b = lao_v4_make(q.x, q.y, q.z, (float)lent_between(seed, 0, 0.6 * size));
     if (kind == 0)
         c.b.w = c.a.w;
     if (kind == 1)
@@ -94,7 +94,7 @@ static double brute(const cone *c, lao_v3 p) {
     return fmin(family(c, p, 0.5 * (low + high)), fmin(family(c, p, 0), family(c, p, 1)));
 }
 static lao_v3 random_point(const cone *c, uint32_t *seed) {
-    double t = vessel_between(seed, -0.5, 1.5), reach = vessel_between(seed, 0, 3);
+    double t = lent_between(seed, -0.5, 1.5), reach = lent_between(seed, 0, 3);
     lao_v3 p = vessel_point(seed, reach * ((double)c->a.w + (double)c->b.w + 0.1));
     lao_v3 ab = lao_v3_make(c->b.x - c->a.x, c->b.y - c->a.y, c->b.z - c->a.z);
     return lao_v3_add(p, lao_v3_along(lao_v3_make(c->a.x, c->a.y, c->a.z), ab, (float)t));

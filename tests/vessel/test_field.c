@@ -384,9 +384,9 @@ static void light_and_openness(void **state) {
 static void random_cone(uint32_t *seed, lao_v4 c[2]) {
     for (int i = 0; i < 2; i++) {
         lao_v3 p = vessel_point(seed, 10);
-        c[i] = lao_v4_make(p.x, p.y, p.z, (float)vessel_between(seed, 0, 4));
+        c[i] = lao_v4_make(p.x, p.y, p.z, (float)lent_between(seed, 0, 4));
     }
-    if (vessel_between(seed, 0, 1) < 0.2)
+    if (lent_between(seed, 0, 1) < 0.2)
         c[1].w = c[0].w;
 }
 static lao_v3 mix(lao_v3 a, lao_v3 b, double t) {
@@ -515,7 +515,7 @@ static void distances_of_branches(void **state) {
     sdv_target *target;
     sdv_target_desc desc = {(RINGS + 1) * 2 * RINGS, p,
                             make_mesh(v3(10, 20, 30), 25, RINGS, p, triangles), triangles, 0};
-    vessel_host host;
+    lent_host host;
     sdv_host h = vessel_host_make(&host);
     assert_int_equal(sdv_reduce(NULL, &t, &r), LAO_OK);
     assert_int_equal(sdv_target_create(&h, &desc, &target), LAO_OK);
@@ -540,20 +540,20 @@ static void distances_of_branches(void **state) {
     assert_memory_equal(per_node, again, r.node_count * sizeof *again);
     host.cancel_at = host.progress_calls + 1;
     assert_int_equal(sdv_target_distances(&h, target, &t, &r, NULL, again), LAO_ERROR_NOT_READY);
-    host.fail_at = host.takes + 1;
+    host.memory.fail_allocation = host.memory.allocations + 1;
     assert_int_equal(sdv_target_distances(&h, target, &t, &r, NULL, again),
                      LAO_ERROR_OUT_OF_MEMORY);
     assert_int_equal(sdv_target_distances(&h, target, &t, NULL, NULL, again),
                      LAO_ERROR_INVALID_ARGUMENT);
     sdv_target_free(target);
-    assert_int_equal(host.bytes, 0);
+    assert_int_equal(host.memory.bytes, 0);
     sdv_reduced_free(&r);
     sdv_tree_free(&t);
 }
 
 static void odd_targets(void **state) {
     (void)state;
-    vessel_host host;
+    lent_host host;
     sdv_host h = vessel_host_make(&host);
     const float p[] = {0, 0, 0, 0, 0, 0, 1, 0, 0, 1, NAN, 0};
     const uint32_t triangles[] = {0, 1, 2, 0, 0, 0, 2, 2, 4};
@@ -564,7 +564,7 @@ static void odd_targets(void **state) {
         assert_true(sdv_target_create(&h, &desc, &t) != LAO_OK);                                   \
         assert_int_equal(host.item, SDV_LOG_##what);                                               \
         assert_null(t);                                                                            \
-        assert_int_equal(host.bytes, 0);                                                           \
+        assert_int_equal(host.memory.bytes, 0);                                                    \
     } while (0)
     REFUSED(TARGET_SHAPE);
     desc.point_count = 3;
@@ -580,10 +580,10 @@ static void odd_targets(void **state) {
     REFUSED(NULL_ARGUMENT);
     desc.points = p;
     for (uint32_t n = 1; n <= 4; n++) {
-        host.fail_at = host.takes + n;
+        host.memory.fail_allocation = host.memory.allocations + n;
         REFUSED(MEMORY);
     }
-    host.fail_at = 0;
+    host.memory.fail_allocation = 0;
     for (uint32_t kind = 0; kind < 2; kind++) { /* degenerate triangles, a path */
         desc.triangle_count = kind == 0 ? 2 : 0;
         assert_int_equal(sdv_target_create(&h, &desc, &t), LAO_OK);
@@ -591,7 +591,7 @@ static void odd_targets(void **state) {
         assert_near(sdv_target_point(t, v3(0.5, 2, 0)), 2, 1e-6);
         sdv_target_free(t);
     }
-    assert_int_equal(host.bytes, 0);
+    assert_int_equal(host.memory.bytes, 0);
 }
 
 int main(void) {

@@ -107,13 +107,13 @@ static double check_distances(const sdv_grid *g, uint32_t rounds, double *mean) 
     uint32_t seed = 7, empty = 0;
     double most = 0, sum = 0;
     for (uint32_t i = 0; i < rounds; i++) {
-        uint32_t c = (uint32_t)vessel_between(&seed, 0, g->cell_count), cone, nearest;
+        uint32_t c = (uint32_t)lent_between(&seed, 0, g->cell_count), cone, nearest;
         const lao_v4 *cell = g->cells + c;
         lao_v3 p = centre_of(g, c), q = p;
         float d = sdv_cones_distance(g->cones, g->cone_count, p, NULL);
-        q.x += g->cell * (float)vessel_between(&seed, -0.5, 0.5);
-        q.y += g->cell * (float)vessel_between(&seed, -0.5, 0.5);
-        q.z += g->cell * (float)vessel_between(&seed, -0.5, 0.5);
+        q.x += g->cell * (float)lent_between(&seed, -0.5, 0.5);
+        q.y += g->cell * (float)lent_between(&seed, -0.5, 0.5);
+        q.z += g->cell * (float)lent_between(&seed, -0.5, 0.5);
         float e = sdv_cones_distance(g->cones, g->cone_count, q, &nearest);
         float own = sdv_grid_distance(g, q, &cone);
         if (cell->w > 0) {
@@ -194,7 +194,7 @@ static void one_ball(void **state) {
 
 static void order_does_not_matter(void **state) {
     (void)state;
-    vessel_host host;
+    lent_host host;
     sdv_host h = vessel_host_make(&host);
     sdv_tree t = random_tree(5, 300, 100, 3);
     sdv_grid a = build(&t, 64), b;
@@ -205,7 +205,7 @@ static void order_does_not_matter(void **state) {
     assert_true(host.progress_calls > 10 && host.done == host.total);
     sdv_grid_free(&a);
     sdv_grid_free(&b);
-    assert_int_equal(host.bytes, 0);
+    assert_int_equal(host.memory.bytes, 0);
     sdv_tree_free(&t);
 }
 
@@ -228,18 +228,18 @@ static void moved_nodes_equal_a_full_build(void **state) {
         uint32_t seed = round + 1, n = round < 4 ? 200 : 50;
         sdv_tree t = round == 5 ? loose_tree(round, n, 90, 4) : random_tree(round, n, 90, 3);
         sdv_grid g = build(&t, 32 + 8 * round);
-        vessel_host host;
+        lent_host host;
         sdv_host h = vessel_host_make(&host);
         host.backwards = (int)round % 2;
         for (int i = 0; i < 12; i++) {
             uint32_t nodes[3], count = 1 + (uint32_t)i % 3;
             for (uint32_t k = 0; k < count; k++) {
-                nodes[k] = (uint32_t)vessel_between(&seed, 0, n);
+                nodes[k] = (uint32_t)lent_between(&seed, 0, n);
                 lao_v4 *p = t.nodes + nodes[k];
-                p->x += (float)vessel_between(&seed, -8, 8);
-                p->y += (float)vessel_between(&seed, -8, 8);
-                p->z += (float)vessel_between(&seed, -8, 8);
-                p->w = (float)vessel_between(&seed, 0, 3);
+                p->x += (float)lent_between(&seed, -8, 8);
+                p->y += (float)lent_between(&seed, -8, 8);
+                p->z += (float)lent_between(&seed, -8, 8);
+                p->w = (float)lent_between(&seed, 0, 3);
             }
             assert_int_equal(sdv_grid_update(&h, &t, nodes, count, &g), LAO_OK);
             sdv_grid fresh = build_like(&t, &g);
@@ -290,9 +290,9 @@ static sdv_tree comb_tree(uint32_t n) {
         double angle = 1.1 * ((i - TRUNK) % COMBS), step = i < TRUNK + COMBS ? 12 : 2.5;
         float *p = positions + 3 * i;
         const float *q = positions + 3 * (i ? parent : 0);
-        p[0] = trunk ? 0 : q[0] + (float)(cos(angle) * step + vessel_between(&seed, -1, 1));
-        p[1] = trunk ? 0 : q[1] + (float)(sin(angle) * step + vessel_between(&seed, -1, 1));
-        p[2] = trunk ? 25.0f * (float)i : q[2] + (float)vessel_between(&seed, -1, 1);
+        p[0] = trunk ? 0 : q[0] + (float)(cos(angle) * step + lent_between(&seed, -1, 1));
+        p[1] = trunk ? 0 : q[1] + (float)(sin(angle) * step + lent_between(&seed, -1, 1));
+        p[2] = trunk ? 25.0f * (float)i : q[2] + (float)lent_between(&seed, -1, 1);
         radii[i] = trunk ? 10 - 0.8f * (float)i : 0.4f;
         if (i)
             segments[i - 1] = (sdv_segment){parent, i};
@@ -373,7 +373,7 @@ static void moved_trunks_equal_a_full_build(void **state) {
             lao_v4 *p = t.nodes + nodes[k];
             lao_v3 by = lao_v3_scale(vessel_direction(&seed), i % 3 ? 3.0f : 14.0f);
             *p = lao_v4_make(0.7f * (p->x + by.x), 0.7f * (p->y + by.y), p->z + 0.3f * by.z,
-                             i % 4 ? p->w : 0.5f * p->w + (float)vessel_between(&seed, 0, 4));
+                             i % 4 ? p->w : 0.5f * p->w + (float)lent_between(&seed, 0, 4));
         }
         assert_int_equal(sdv_grid_update(NULL, &t, nodes, count, &g), LAO_OK);
         sdv_grid fresh = build_like(&t, &g);
@@ -386,7 +386,7 @@ static void moved_trunks_equal_a_full_build(void **state) {
 
 static void what_cannot_be_is_refused(void **state) {
     (void)state;
-    vessel_host host;
+    lent_host host;
     sdv_host h = vessel_host_make(&host);
     sdv_tree t = random_tree(2, 50, 50, 2), other = random_tree(2, 40, 50, 2);
     sdv_grid g, before;
@@ -413,7 +413,7 @@ static void what_cannot_be_is_refused(void **state) {
     for (uint32_t n = 1; n < 8; n++) {
         host.cancel_at = host.progress_calls + n;
         REFUSED(sdv_grid_build(&h, &t, &desc, &g), CANCELLED);
-        assert_int_equal(host.bytes, 0);
+        assert_int_equal(host.memory.bytes, 0);
     }
     host.cancel_at = 0;
     assert_int_equal(sdv_grid_build(&h, &t, &desc, &g), LAO_OK);
@@ -425,7 +425,7 @@ static void what_cannot_be_is_refused(void **state) {
     host.cancel_at = host.progress_calls + 1;
     REFUSED(sdv_grid_update(&h, &t, &node, 1, &g), CANCELLED);
     sdv_grid_free(&g);
-    assert_int_equal(host.bytes, 0);
+    assert_int_equal(host.memory.bytes, 0);
     sdv_tree_free(&t);
     sdv_tree_free(&other);
 }
@@ -436,10 +436,10 @@ static void memory_may_end(void **state) {
     sdv_grid_desc desc = {24, NULL, 0, {0, 0, 0}};
     uint32_t node = 7, n = 1;
     for (int built = 0; built < 2; n++) {
-        vessel_host host;
+        lent_host host;
         sdv_host h = vessel_host_make(&host);
         sdv_grid g;
-        host.fail_at = n;
+        host.memory.fail_allocation = n;
         lao_result result = sdv_grid_build(&h, &t, &desc, &g);
         if (result == LAO_OK) {
             sdv_grid before = build_like(&t, &g);
@@ -457,7 +457,7 @@ static void memory_may_end(void **state) {
         }
         assert_true(result == LAO_OK || result == LAO_ERROR_OUT_OF_MEMORY);
         assert_int_equal(host.failures, result != LAO_OK);
-        assert_int_equal(host.bytes, 0);
+        assert_int_equal(host.memory.bytes, 0);
     }
     assert_int_equal(n, 22);
     sdv_tree_free(&t);

@@ -440,7 +440,7 @@ static void drawings(void **state) {
     const float one[] = {1, 2, 3}, ball[] = {0};
     case_ c = lay(1, one, ball, 0, NULL, NULL);
     check_drawing(&c, NULL);
-    vessel_host host;
+    lent_host host;
     sdv_host h = vessel_host_make(&host);
     sdv_tree flat;
     assert_int_equal(sdv_layout_tree(&h, NULL, &c.reduced, &c.layout, NULL, &flat),
@@ -449,13 +449,14 @@ static void drawings(void **state) {
     lao_result result = LAO_ERROR_OUT_OF_MEMORY;
     for (uint32_t n = 1; result != LAO_OK; n++) {
         uint32_t failures = host.failures;
-        host.fail_at = host.takes + n;
+        host.memory.fail_allocation = host.memory.allocations + n;
         result = sdv_layout_tree(&h, &c.tree, &c.reduced, &c.layout, NULL, &flat);
         assert_int_equal(host.failures, failures + (result != LAO_OK));
-        assert_true(result == LAO_OK || (result == LAO_ERROR_OUT_OF_MEMORY && host.bytes == 0));
+        assert_true(result == LAO_OK ||
+                    (result == LAO_ERROR_OUT_OF_MEMORY && host.memory.bytes == 0));
     }
     sdv_tree_free(&flat);
-    assert_int_equal(host.bytes, 0);
+    assert_int_equal(host.memory.bytes, 0);
     assert_int_equal(host.warnings, 0);
     done(&c);
 }

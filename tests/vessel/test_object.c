@@ -151,7 +151,7 @@ static void the_cpu_builds_what_the_device_cannot(void **state) {
     for (size_t i = 0; i < sizeof sizes / sizeof *sizes; i++) {
         int small = sizes[i] < 2048;
         sdv_tree t = tree_of(3, 80, 50, 2, 0);
-        vessel_host host;
+        lent_host host;
         sdv_host h = vessel_host_make(&host);
         sdv_grid_desc desc = {40, NULL, 0, {0, 0, 0}};
         sdv_grid g;
@@ -182,7 +182,7 @@ static void the_cpu_builds_what_the_device_cannot(void **state) {
         }
         sdv_object_free(&o);
         sdv_tree_free(&t);
-        assert_int_equal(host.bytes, 0);
+        assert_int_equal(host.memory.bytes, 0);
     }
 }
 
@@ -254,14 +254,14 @@ static void the_nearest_of_all(void **state) {
     for (uint32_t i = 0; i < 4; i++) {
         sdv_tree t = tree_of(i + 3, counts[i], 100, 3, 0);
         const sdv_grid_desc cells = {32, NULL, 0, {0, 0, 0}};
-        vessel_host host;
+        lent_host host;
         sdv_host h = vessel_host_make(&host);
         sdv_object object;
         assert_int_equal(sdv_object_make_tree(&h, &t, &cells, IMAGE_SIZE, NULL, &object), LAO_OK);
         assert_int_equal(sdv_object_shapes(&h, &shapes, NULL, &object), LAO_OK);
         assert_int_equal(buffer_of(&object, "vessel_shapes")->texel_count, 9);
         for (uint32_t n = 1; n <= 2; n++) {
-            host.fail_at = host.takes + n;
+            host.memory.fail_allocation = host.memory.allocations + n;
             assert_int_equal(sdv_object_shapes(&h, &shapes, colors, &object),
                              LAO_ERROR_OUT_OF_MEMORY);
         }
@@ -272,14 +272,14 @@ static void the_nearest_of_all(void **state) {
         assert_int_equal(sdv_object_move(&h, &t, &node, 1, &object), LAO_OK);
         check_nearest(&object, &object.grid, i == 3 ? 400 : 20);
         sdv_object_free(&object);
-        assert_int_equal(host.bytes, 0);
+        assert_int_equal(host.memory.bytes, 0);
         sdv_tree_free(&t);
     }
 }
 
 static void what_cannot_be_is_refused(void **state) {
     sdv_tree t = tree_of(5, 30, 50, 2, 0), other = tree_of(5, 31, 50, 2, 0);
-    vessel_host host;
+    lent_host host;
     sdv_host h = vessel_host_make(&host);
     sdv_grid_desc desc = {7, NULL, 0, {0, 0, 0}};
     uint32_t node = 30;
@@ -302,7 +302,7 @@ static void what_cannot_be_is_refused(void **state) {
     sdv_object_free(&o);
     sdv_tree_free(&t);
     sdv_tree_free(&other);
-    assert_int_equal(host.bytes, 0);
+    assert_int_equal(host.memory.bytes, 0);
 }
 
 /* By the device, and by the CPU in its place. */
@@ -314,10 +314,10 @@ static void memory_may_end(void **state) {
     for (uint32_t image_size = 0; image_size <= IMAGE_SIZE; image_size += IMAGE_SIZE) {
         uint32_t n = 1;
         for (int made = 0; made < 2; n++) {
-            vessel_host host;
+            lent_host host;
             sdv_host h = vessel_host_make(&host);
             sdv_object o;
-            host.fail_at = n;
+            host.memory.fail_allocation = n;
             lao_result result = sdv_object_make_tree(&h, &t, &desc, image_size, NULL, &o);
             if (result == LAO_OK) {
                 result = sdv_object_move(&h, &t, &node, 1, &o);
@@ -328,7 +328,7 @@ static void memory_may_end(void **state) {
             }
             assert_true(result == LAO_OK || result == LAO_ERROR_OUT_OF_MEMORY);
             assert_int_equal(host.failures, result != LAO_OK);
-            assert_int_equal(host.bytes, 0);
+            assert_int_equal(host.memory.bytes, 0);
         }
         assert_in_range(n, 4, 40);
     }

@@ -50,12 +50,12 @@ static void constants_and_convexity(void **state) {
             d.push = i / SIZES / 2 % 2;
             d.exponent = exponents[i / SIZES / 4 % 3];
             for (uint32_t k = 0; k < n; k++) {
-                int here = kind == 1 ? k == n / 2 : vessel_between(&seed, 0, 1) < 0.1 || k == 0;
-                weights[k] = here ? (float)vessel_between(&seed, 0.01, 2) : 0.0f;
+                int here = kind == 1 ? k == n / 2 : lent_between(&seed, 0, 1) < 0.1 || k == 0;
+                weights[k] = here ? (float)lent_between(&seed, 0.01, 2) : 0.0f;
                 for (uint32_t c = 0; c < CHANNELS; c++)
                     values[CHANNELS * k + c] = !here      ? NAN
                                                : kind < 2 ? 3.7f - (float)c
-                                                          : (float)vessel_between(&seed, -1, 1);
+                                                          : (float)lent_between(&seed, -1, 1);
             }
             run(&d);
             for (uint32_t k = 0; k < n * CHANNELS; k++) {
@@ -78,7 +78,7 @@ static void full_images_stay(void **state) {
             sdv_pull_push_desc d = image(sizes[i][0], sizes[i][1], CHANNELS);
             d.exponent = k * 12;
             for (uint32_t j = 0; j < d.width * d.height * CHANNELS; j++)
-                before[j] = values[j] = (float)vessel_between(&seed, -9, 9);
+                before[j] = values[j] = (float)lent_between(&seed, -9, 9);
             for (uint32_t j = 0; j < d.width * d.height; j++)
                 weights[j] = 1.0f + (float)(j % 2);
             run(&d);
@@ -157,7 +157,7 @@ static void affine_maps_commute(void **state) {
         d.exponent = 25;
         seed = 3;
         for (uint32_t i = 0; i < 61 * 47; i++) {
-            double here = vessel_between(&seed, 0, 1), v = vessel_between(&seed, -1, 1);
+            double here = lent_between(&seed, 0, 1), v = lent_between(&seed, -1, 1);
             weights[i] = here < 0.05 ? (float)(20 * here) : 0.0f;
             values[i] = (float)(round ? 3 * v + 2 : v);
         }
@@ -178,9 +178,9 @@ static void channels_do_not_mix(void **state) {
                 uint32_t seed = 9, stride = both ? channels : 1;
                 sdv_pull_push_desc d = image(33, 20, stride);
                 for (uint32_t i = 0; i < 33 * 20; i++) {
-                    weights[i] = vessel_between(&seed, 0, 1) < 0.1 ? 0.7f : 0.0f;
+                    weights[i] = lent_between(&seed, 0, 1) < 0.1 ? 0.7f : 0.0f;
                     for (uint32_t k = 0; k < channels; k++) {
-                        float v = (float)vessel_between(&seed, -1, 1);
+                        float v = (float)lent_between(&seed, -1, 1);
                         if (both || k == c)
                             values[i * stride + (both ? k : 0)] = v;
                     }
@@ -199,7 +199,7 @@ static void channels_do_not_mix(void **state) {
 
 static void faults(void **state) {
     (void)state;
-    vessel_host host;
+    lent_host host;
     sdv_host h = vessel_host_make(&host);
     sdv_pull_push_desc d = image(40, 70, 3);
     uint32_t empty = 0;
@@ -216,7 +216,7 @@ static void faults(void **state) {
     assert_true(host.done == host.total && values[3 * 2000] == 5.0f);
     host.cancel_at = host.progress_calls + 2;
     assert_int_equal(sdv_pull_push(&h, &d, &empty), LAO_ERROR_NOT_READY);
-    host.fail_at = host.takes + 1;
+    host.memory.fail_allocation = host.memory.allocations + 1;
     assert_int_equal(sdv_pull_push(&h, &d, &empty), LAO_ERROR_OUT_OF_MEMORY);
     d.channels = 0;
     assert_int_equal(sdv_pull_push(&h, &d, &empty), LAO_ERROR_INVALID_ARGUMENT);
@@ -224,21 +224,21 @@ static void faults(void **state) {
     d.values = NULL;
     assert_int_equal(sdv_pull_push(&h, &d, &empty), LAO_ERROR_INVALID_ARGUMENT);
     assert_int_equal(host.failures, 4);
-    assert_int_equal(host.bytes, 0);
+    assert_int_equal(host.memory.bytes, 0);
 }
 
 static void order_does_not_matter(void **state) {
     (void)state;
     static float first[SIDE * SIDE * CHANNELS];
     for (int backwards = 0; backwards < 2; backwards++) {
-        vessel_host host;
+        lent_host host;
         sdv_host h = vessel_host_make(&host);
         uint32_t seed = 4;
         sdv_pull_push_desc d = image(2, 1500, 2);
         host.backwards = backwards;
         for (uint32_t i = 0; i < 3000; i++) {
             weights[i] = i % 7 ? 0.0f : 0.5f;
-            values[2 * i] = values[2 * i + 1] = (float)vessel_between(&seed, -1, 1);
+            values[2 * i] = values[2 * i + 1] = (float)lent_between(&seed, -1, 1);
         }
         assert_int_equal(sdv_pull_push(&h, &d, NULL), LAO_OK);
         if (!backwards)

@@ -108,11 +108,11 @@ static void shoot(const sdv_tree *t, const sdv_grid *g, uint32_t *seed, tally *o
     lao_v3 middle =
         lao_v3_make(g->origin.x + 0.5f * (float)size[0], g->origin.y + 0.5f * (float)size[1],
                     g->origin.z + 0.5f * (float)size[2]);
-    const lao_v4 *node = t->nodes + (uint32_t)vessel_between(seed, 0, t->node_count);
+    const lao_v4 *node = t->nodes + (uint32_t)lent_between(seed, 0, t->node_count);
     lao_v3 from = lao_v3_along(middle, vessel_direction(seed), (float)reach);
     lao_v3 to = lao_v3_along(lao_v3_make(node->x, node->y, node->z), vessel_direction(seed),
-                             node->w * (float)vessel_between(seed, 0, 2));
-    if (vessel_between(seed, 0, 1) < 0.5)
+                             node->w * (float)lent_between(seed, 0, 2));
+    if (lent_between(seed, 0, 1) < 0.5)
         to = lao_v3_add(middle, vessel_point(seed, 0.4 * reach));
     sdv_ray ray = {from, lao_v3_unit(lao_v3_sub(to, from), from), SDV_TRACE_NEAREST, 0};
     const double o[3] = {(double)from.x, (double)from.y, (double)from.z};

@@ -92,7 +92,7 @@ static void trees_fill_the_organ(void **state) {
     uint32_t seed = 1, far = 0;
     for (int i = 0; i < 2000; i++) {
         lao_v3 u = vessel_direction(&seed);
-        float r = 0.9f * (float)cbrt(vessel_between(&seed, 0, 1));
+        float r = 0.9f * (float)cbrt(lent_between(&seed, 0, 1));
         lao_v3 p = lao_v3_make(r * u.x * s.liver[0], r * u.y * s.liver[1], r * u.z * s.liver[2]);
         lao_v3 d = lao_v3_make(p.x - s.tumour[0], p.y - s.tumour[1], p.z - s.tumour[2]);
         far += lao_v3_dot(d, d) > 400 && sdv_grid_distance(&g, p, NULL) > 9;

@@ -64,7 +64,7 @@ static void flat_field(screen *s, int kind, int flips) {
             double zx = kind == ALONG_X ? 1 : kind == AT_30 ? cos(PI / 6) : px - off;
             double zy = kind == ALONG_X ? 0 : kind == AT_30 ? sin(PI / 6) : py - off;
             double size2 = sqrt(zx * zx + zy * zy);
-            double sign = flips && vessel_between(&seed, 0, 1) < 0.5 ? -1 : 1;
+            double sign = flips && lent_between(&seed, 0, 1) < 0.5 ? -1 : 1;
             if (!(size2 > 0)) {
                 zx = size2 = 1;
             }
@@ -145,7 +145,7 @@ static void sheets(void **state) {
     flat_frame(&s);
     for (uint32_t i = 0; i < 17 * 9; i++) { /* a slope of 1 in x, seen here and there */
         lao_v3 p = place(&s, i);
-        bool seen = i % 17 == 3 || i % 17 == 16 || vessel_between(&seed, 0, 1) < 0.1;
+        bool seen = i % 17 == 3 || i % 17 == 16 || lent_between(&seed, 0, 1) < 0.1;
         position[i] = lao_v4_make(p.x, p.y, -50 + p.x, seen ? 2.0f : -1.0f);
         normal[i] = lao_v4_make(-0.70710678f, 0, 0.70710678f, 0);
     }
@@ -589,7 +589,7 @@ static void fine_ink(void **state) {
 static void patterns(void **state) {
     enum { N = 16, GRID = 160 };
     static const double wide[] = {0.001, 0.02, 0.6};
-    vessel_host counted;
+    lent_host counted;
     sdv_host host = vessel_host_make(&counted);
     float values[N * N];
     sdv_object object;
@@ -603,10 +603,10 @@ static void patterns(void **state) {
     object.desc.buffers = object.buffers;
     assert_int_equal(sdv_object_pattern(&host, values, 257, &object), LAO_ERROR_INVALID_ARGUMENT);
     assert_int_equal(sdv_object_pattern(&host, NULL, N, &object), LAO_ERROR_INVALID_ARGUMENT);
-    counted.fail_at = counted.takes + 2;
+    counted.memory.fail_allocation = counted.memory.allocations + 2;
     assert_int_equal(sdv_object_pattern(&host, values, N, &object), LAO_ERROR_OUT_OF_MEMORY);
-    assert_int_equal(counted.bytes, 0);
-    counted.fail_at = 0;
+    assert_int_equal(counted.memory.bytes, 0);
+    counted.memory.fail_allocation = 0;
     assert_int_equal(sdv_object_pattern(&host, values, N, &object), LAO_OK);
     assert_true(object.pattern[0] == N && object.desc.buffer_count == 1);
     for (int w = 0; w < 3; w++) {
@@ -633,7 +633,7 @@ static void patterns(void **state) {
         }
     }
     sdv_object_free(&object);
-    assert_int_equal(counted.bytes, 0);
+    assert_int_equal(counted.memory.bytes, 0);
 }
 
 /* The void keeps all of its ink beside a vessel, half of it half way, none from the reach on. */
@@ -701,7 +701,7 @@ static void meshes(void **state) {
     static const float upward[] = {0, 0, 1, 0, 0, 1, 0, 0, 1, 0, 0, 1};
     uint32_t faces[] = {0, 1, 2, 0, 1, 3};
     float broken[12];
-    vessel_host counted;
+    lent_host counted;
     sdv_host host = vessel_host_make(&counted);
     sdv_mesh_desc desc;
     sdv_object object, none;
@@ -719,7 +719,7 @@ static void meshes(void **state) {
     assert_int_equal(object.desc.triangle_count, 2);
     assert_true(object.desc.bounds[1][0] == 4 && object.desc.bounds[1][2] == 1);
     sdv_object_free(&object);
-    assert_int_equal(counted.bytes, 0);
+    assert_int_equal(counted.memory.bytes, 0);
     memset(&object, 7, sizeof object);
     memcpy(&none, &object, sizeof none);
     faces[5] = 4;
@@ -739,10 +739,10 @@ static void meshes(void **state) {
     assert_int_equal(sdv_object_drawn(&host, NULL, &object), LAO_ERROR_INVALID_ARGUMENT);
     assert_int_equal(counted.item, SDV_LOG_NULL_ARGUMENT);
     desc.normals = upward;
-    counted.fail_at = counted.takes + 1;
+    counted.memory.fail_allocation = counted.memory.allocations + 1;
     assert_int_equal(sdv_object_mesh(&host, &desc, &object), LAO_ERROR_OUT_OF_MEMORY);
     assert_int_equal(counted.failures, 6);
-    assert_int_equal(counted.bytes, 0);
+    assert_int_equal(counted.memory.bytes, 0);
     assert_memory_equal(&object, &none, sizeof object);
 }
 

@@ -280,9 +280,9 @@ static void no_vessel_is_too_thin(void **state) {
     uint32_t seed = 5;
     scene c = make_random(6, 150, 100, 0.002, 32);
     for (int i = 0; i < 20000; i++) {
-        uint32_t k = (uint32_t)vessel_between(&seed, 0, c.grid.cone_count);
+        uint32_t k = (uint32_t)lent_between(&seed, 0, c.grid.cone_count);
         const lao_v4 *a = c.grid.cones + 2 * k, *b = a + 1;
-        float t = (float)vessel_between(&seed, 0, 1);
+        float t = (float)lent_between(&seed, 0, 1);
         lao_v3 o, v = v3(0, 0, 1);
         lao_v3 p = v3((double)(a->x + t * (b->x - a->x)), (double)(a->y + t * (b->y - a->y)),
                       (double)(a->z + t * (b->z - a->z)));

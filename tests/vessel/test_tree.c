@@ -304,8 +304,8 @@ static void joining_equals_brute_force(void **state) {
         uint32_t m = 0, state_ = seed, joined = 0, group[N];
         for (uint32_t i = 0; i < N; i++) {
             for (uint32_t k = 0; k < 3; k++)
-                p[3 * i + k] = (float)vessel_between(&state_, -20, 20);
-            r[i] = (float)exp(vessel_between(&state_, -6, 2));
+                p[3 * i + k] = (float)lent_between(&state_, -20, 20);
+            r[i] = (float)exp(lent_between(&state_, -6, 2));
             if (i % POINTS) {
                 segments[m].parent = i - 1;
                 segments[m++].child = i;
@@ -380,7 +380,7 @@ static void attributes_follow(void **state) {
 
 static void what_cannot_be_is_refused(void **state) {
     (void)state;
-    vessel_host host;
+    lent_host host;
     sdv_host h = vessel_host_make(&host);
     sample *s = start();
     sdv_tree t;
@@ -416,7 +416,7 @@ static void what_cannot_be_is_refused(void **state) {
     REFUSED(TREE_COUNT);
     assert_int_equal(sdv_tree_build(&h, NULL, &t), LAO_ERROR_INVALID_ARGUMENT);
     assert_int_equal(host.warnings, 0);
-    assert_int_equal(host.bytes, 0);
+    assert_int_equal(host.memory.bytes, 0);
     free(s);
 }
 
@@ -427,7 +427,7 @@ static void memory_may_end(void **state) {
     vessel_random_tree(3, 100, 50, 3, p, r, segments);
     sdv_tree_desc desc = {100, p, r, 99, segments, SDV_TREE_LINES, NULL, NULL, 0, 0};
     for (uint32_t n = 1;; n++) {
-        vessel_host host;
+        lent_host host;
         sdv_host h = vessel_host_make(&host);
         sdv_tree t;
         sdv_reduced reduced;
@@ -435,7 +435,7 @@ static void memory_may_end(void **state) {
         memset(&t, 0, sizeof t);
         memset(&reduced, 0, sizeof reduced);
         memset(&layout, 0, sizeof layout);
-        host.fail_at = n;
+        host.memory.fail_allocation = n;
         lao_result result = sdv_tree_build(&h, &desc, &t);
         if (result == LAO_OK)
             result = sdv_reduce(&h, &t, &reduced);
@@ -446,7 +446,7 @@ static void memory_may_end(void **state) {
         sdv_layout_free(&layout);
         sdv_reduced_free(&reduced);
         sdv_tree_free(&t);
-        assert_int_equal(host.bytes, 0);
+        assert_int_equal(host.memory.bytes, 0);
         if (result == LAO_OK) {
             assert_int_equal(n, 7);
             break;
@@ -465,7 +465,7 @@ static void order_does_not_matter(void **state) {
     for (uint32_t i = 0; i < N; i++)
         name[i] = i;
     for (uint32_t i = N - 1; i > 0; i--) {
-        uint32_t k = (uint32_t)vessel_between(&seed, 0, i + 1), swap = name[i];
+        uint32_t k = (uint32_t)lent_between(&seed, 0, i + 1), swap = name[i];
         name[i] = name[k];
         name[k] = swap;
     }

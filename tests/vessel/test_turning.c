@@ -32,7 +32,7 @@ static void body_make(body *b) {
     uint32_t seed = 11;
     for (int i = 0; i < BALLS; i++) {
         b->centres[i] = vessel_point(&seed, 26);
-        b->radii[i] = vessel_between(&seed, 6, 16);
+        b->radii[i] = lent_between(&seed, 6, 16);
         b->cones[2 * i] = b->cones[2 * i + 1] = lao_v4_make(
             b->centres[i].x, b->centres[i].y, b->centres[i].z, 0.4f * (float)b->radii[i]);
     }

@@ -5,96 +5,43 @@
 #include <stdlib.h>
 #include <string.h>
 
-static void *take(void *user, size_t size) {
-    vessel_host *host = (vessel_host *)user;
-    void *memory;
-    if (++host->takes == host->fail_at)
-        return NULL;
-    memory = malloc(size);
-    if (memory) {
-        memset(memory, 0xa5, size); /* nothing may rely on zeros */
-        host->bytes += size;
-        host->most = host->bytes > host->most ? host->bytes : host->most;
-    }
-    return memory;
-}
-
-static void give(void *user, void *memory, size_t size) {
-    vessel_host *host = (vessel_host *)user;
-    host->bytes -= size;
-    free(memory);
-}
-
 static void keep_log(void *user, sdv_log_item item, lao_result result, const char *text) {
-    vessel_host *host = (vessel_host *)user;
-    host->seen[item]++;
-    if (result == LAO_OK) {
-        host->warnings++;
-        snprintf(host->warning, sizeof host->warning, "%s", text);
-    } else {
-        host->failures++;
-        host->item = item;
-        host->result = result;
-        snprintf(host->text, sizeof host->text, "%s", text);
-    }
+    lent_log((lent_host *)user, (uint32_t)item, result, text);
 }
 
-static void run(void *user, uint32_t count, void (*fn)(void *arg, uint32_t index), void *arg) {
-    const vessel_host *host = (const vessel_host *)user;
-    for (uint32_t i = 0; i < count; i++)
-        fn(arg, host->backwards ? count - 1 - i : i);
-}
-
-static int progress(void *user, uint64_t done, uint64_t total) {
-    vessel_host *host = (vessel_host *)user;
-    host->done = done;
-    host->total = total;
-    return ++host->progress_calls == host->cancel_at;
-}
-
-sdv_host vessel_host_make(vessel_host *host) {
+sdv_host vessel_host_make(lent_host *host) {
     sdv_host h;
     memset(host, 0, sizeof *host);
     memset(&h, 0, sizeof h);
-    h.allocator.allocate = take;
-    h.allocator.release = give;
-    h.allocator.user = host;
-    h.job.run = run;
-    h.job.progress = progress;
-    h.job.user = host;
+    h.allocator = lent_allocator(&host->memory);
+    h.job = lent_job(host);
     h.log = keep_log;
     h.user = host;
     return h;
 }
 
-double vessel_between(uint32_t *seed, double low, double high) {
-    *seed = *seed * 1664525u + 1013904223u;
-    return low + (high - low) * (double)(lao_hash(*seed) >> 8) / 16777216.0;
-}
-
 lao_v3 vessel_point(uint32_t *seed, double size) {
-    float x = (float)vessel_between(seed, -size, size),
-          y = (float)vessel_between(seed, -size, size);
-    return lao_v3_make(x, y, (float)vessel_between(seed, -size, size));
+    float x = (float)lent_between(seed, -size, size), y = (float)lent_between(seed, -size, size);
+    return lao_v3_make(x, y, (float)lent_between(seed, -size, size));
 }
 lao_v3 vessel_direction(uint32_t *seed) {
-    float u = (float)vessel_between(seed, 0, 1);
-    return lao_sphere_point(u, (float)vessel_between(seed, 0, 1));
+    float u = (float)lent_between(seed, 0, 1);
+    return lao_sphere_point(u, (float)lent_between(seed, 0, 1));
 }
 
 void vessel_random_tree(uint32_t seed, uint32_t n, double size, double radius, float *positions,
                         float *radii, sdv_segment *segments) {
     for (uint32_t i = 0; i < n; i++) {
-        uint32_t parent = i ? (uint32_t)vessel_between(&seed, i > 20 ? i - 20 : 0, i) : 0;
+        uint32_t parent = i ? (uint32_t)lent_between(&seed, i > 20 ? i - 20 : 0, i) : 0;
         double step = i ? 0.15 * size : 0.5 * size;
         for (int k = 0; k < 3; k++) {
             double from = i ? (double)positions[3 * parent + (uint32_t)k] : 0;
-            double v = from + vessel_between(&seed, -step, step);
+            double v = from + lent_between(&seed, -step, step);
             positions[3 * i + (uint32_t)k] = (float)(v > size / 2    ? size / 2
                                                      : v < -size / 2 ? -size / 2
                                                                      : v);
         }
-        radii[i] = (float)vessel_between(&seed, 0.05 * radius, radius);
+        radii[i] = (float)lent_between(&seed, 0.05 * radius, radius);
         if (i) {
             segments[i - 1].parent = parent;
             segments[i - 1].child = i;

@@ -3,26 +3,12 @@
 #ifndef VESSEL_HOST_H
 #define VESSEL_HOST_H
 
+#include "lent.h"
 #include "sdfvessel.h"
 
-typedef struct vessel_host {
-    uint64_t bytes, most;        /* taken now; most at one time */
-    uint32_t takes, fail_at;     /* allocations so far; the n-th fails, 0: none */
-    uint32_t failures, warnings; /* logged */
-    sdv_log_item item;           /* the last failure */
-    lao_result result;
-    char text[256], warning[256];
-    uint32_t seen[SDV_LOG_ITEM_COUNT];  /* how often each item was logged */
-    uint32_t cancel_at, progress_calls; /* progress cancels at the n-th call, 0: never */
-    uint64_t done, total;
-    int backwards; /* the job runs its items last to first */
-} vessel_host;
-
 /* Clears `host` and returns what calls take. */
-sdv_host vessel_host_make(vessel_host *host);
+sdv_host vessel_host_make(lent_host *host);
 
-/* In [low, high), from a state that the call moves on. */
-double vessel_between(uint32_t *seed, double low, double high);
 /* Each coordinate in [-size, size). */
 lao_v3 vessel_point(uint32_t *seed, double size);
 /* A unit vector. */

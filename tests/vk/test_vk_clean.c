@@ -45,10 +45,10 @@ static void frames_in_ring_order(void **state) {
     assert_rendered(&f, context, &frame);
     fixture_wait(&f);
     int first = covered(context, frame.view);
-    int allocations = f.allocations;
+    uint32_t allocations = f.memory.allocations;
     for (int i = 0; i < 20; i++)
         assert_rendered(&f, context, &frame);
-    assert_int_equal(f.allocations, allocations);
+    assert_int_equal(f.memory.allocations, allocations);
     fixture_wait(&f);
     assert_true(first > 50);
     assert_int_equal(covered(context, frame.view), first);

@@ -106,8 +106,8 @@ static int live(life *l, lao_result *result) {
     }
     fixture_wait(&l->f);
     lao_destroy(l->context);
-    if (l->f.bytes != 0)
-        fail_msg("%ld bytes leak", l->f.bytes);
+    if (l->f.memory.bytes != 0)
+        fail_msg("%ld bytes leak", l->f.memory.bytes);
     return failures;
 }
 
@@ -120,7 +120,7 @@ static void die(life *l) {
     }
     fixture_wait(&l->f);
     lao_destroy(l->context);
-    assert_int_equal(l->f.bytes, 0);
+    assert_int_equal(l->f.memory.bytes, 0);
 }
 
 static void any_call_fails(void **state) {
@@ -189,7 +189,7 @@ static void any_function_is_missing(void **state) {
         assert_int_equal(l.f.item, LAO_LOG_BACKEND_FUNCTION);
         if (!strstr(l.f.text, vk_wrap.hidden))
             fail_msg("\"%s\" does not name %s", l.f.text, vk_wrap.hidden);
-        assert_int_equal(l.f.bytes, 0);
+        assert_int_equal(l.f.memory.bytes, 0);
     } while (vk_wrap.hidden[0]);
     assert_true(n > 60);
     fixture_close(&l.f);
@@ -197,19 +197,19 @@ static void any_function_is_missing(void **state) {
 
 static void any_allocation_fails(void **state) {
     static life l;
-    int n = 1, failures = 1;
+    uint32_t n = 1;
     (void)state;
     fixture_open(&l.f, 0);
-    for (; failures; n++) {
+    for (int failures = 1; failures; n++) {
         lao_result result = LAO_ERROR_OUT_OF_MEMORY;
         vk_wrap_reset();
-        l.f.allocations = 0;
-        l.f.fail_allocation = n;
+        l.f.memory.allocations = 0;
+        l.f.memory.fail_allocation = n;
         failures = live(&l, &result);
         assert_int_equal(result, LAO_ERROR_OUT_OF_MEMORY);
     }
     assert_true(n > 20);
-    print_message("%d allocations\n", n - 2);
+    print_message("%u allocations\n", n - 2);
     fixture_close(&l.f);
 }
 
@@ -233,7 +233,7 @@ static void a_plan_that_comes_back_makes_no_pipeline(void **state) {
     }
     assert_int_equal(vk_wrap.pipelines, made);
     lao_destroy(l.context);
-    assert_int_equal(l.f.bytes, 0);
+    assert_int_equal(l.f.memory.bytes, 0);
     fixture_close(&l.f);
 }
 

@@ -30,21 +30,7 @@ void fixture_open(fixture *f, uint32_t api_version) {
 void fixture_close(fixture *f) {
     uint32_t messages = host_vk_close(f->host);
     assert_int_equal(messages, 0);
-    assert_int_equal(f->bytes, 0);
-}
-
-static void *allocate(void *user, size_t size) {
-    fixture *f = user;
-    if (++f->allocations == f->fail_allocation)
-        return NULL;
-    f->bytes += (long)size;
-    return malloc(size);
-}
-
-static void release(void *user, void *memory, size_t size) {
-    fixture *f = user;
-    f->bytes -= (long)size;
-    free(memory);
+    assert_int_equal(f->memory.bytes, 0);
 }
 
 static void on_log(void *user, lao_log_item item, lao_result result, const char *text) {
@@ -67,9 +53,7 @@ lao_result fixture_context(fixture *f, int queue, lao_context **context) {
     assert_int_equal(lao_vk_backend(&vk, &backend), LAO_OK);
     memset(&desc, 0, sizeof desc);
     desc.backend = &backend;
-    desc.allocator.allocate = allocate;
-    desc.allocator.release = release;
-    desc.allocator.user = f;
+    desc.allocator = lent_allocator(&f->memory);
     desc.logger.log = on_log;
     desc.logger.user = f;
     return lao_create(&desc, context);

@@ -4,7 +4,7 @@
 #define VK_FIXTURE_H
 
 #include "host_vk.h"
-#include "lineao.h"
+#include "lent.h"
 #include "vk_wrap.h"
 
 #include <setjmp.h>
@@ -17,9 +17,8 @@ enum { FIXTURE_FRAMES = HOST_VK_COMMANDS };
 
 typedef struct fixture {
     host_vk *host;
-    int fail_allocation; /* the n-th fails; 0: none */
-    int allocations, logs;
-    long bytes; /* alive */
+    lent_memory memory;
+    int logs;
     lao_log_item item;
     char text[1024]; /* of the last log item */
 } fixture;
