@@ -15,14 +15,18 @@ static void copy_json(const view *v) {
     free(json);
 }
 
+int panel_picked_height(void) {
+    return (int)(9 * ui_text_height());
+}
+
 /* What was clicked, and what can be done with it. */
 static void picked_text(view *v, window_rect place) {
     char text[160];
-    float height = 9 * ui_text_height();
+    int height = panel_picked_height();
     if (v->picked.kind == PICKED_NOTHING)
         return;
-    ui_panel("Picked", (window_rect){place.x, place.y + place.height - (int)height, place.width,
-                                     (int)height});
+    ui_panel("Picked",
+             (window_rect){place.x, place.y + place.height - height, place.width, height});
     ui_line();
     ui_disable(v->film.running);
     if (ui_small_button("Look there")) {
@@ -200,7 +204,7 @@ static void status(const view *v, window_rect place, bool narrow) {
 static void surround(view *v) {
     int width = (int)(330 * ui_scale()), line = (int)(1.7f * ui_text_height());
     int timeline = v->open && player_timed(v) ? (int)(4.2f * ui_text_height()) : 0;
-    int below = v->picked.kind != PICKED_NOTHING ? (int)(9 * ui_text_height()) : 0;
+    int below = v->picked.kind != PICKED_NOTHING ? panel_picked_height() : 0;
     window_rect all = {0, 0, v->window.width, v->window.height};
     v->picture = all;
     if (!v->panels)

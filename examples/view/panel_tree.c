@@ -123,6 +123,14 @@ static void point(view *v, const flat_tree *f) {
     trace(v, "node %u", found.point);
 }
 
+/* All of it can be seen, and nothing moves when a click makes room for what was picked. */
+static float height_of(const view *v, float width) {
+    float left = ui_height_left();
+    if (v->picked.kind == PICKED_NOTHING)
+        left -= (float)panel_picked_height();
+    return fmaxf(0.5f * width, fminf(1.2f * width, left));
+}
+
 void panel_tree(view *v) {
     flat_tree f = {.tree = shown_tree(v)};
     float width;
@@ -134,7 +142,7 @@ void panel_tree(view *v) {
     ui_text_dim("The branches side by side, the root above. Point at one, or click it, here or in "
                 "the picture. Wheel: larger. Drag: move.");
     ui_width_left(&width);
-    f.area = ui_canvas("layout", width, 1.2f * width);
+    f.area = ui_canvas("layout", width, height_of(v, width));
     move(&v->flat, &f.area);
     f.shown = v->flat;
     const window_rect place = {(int)f.area.x, (int)f.area.y, (int)f.area.width, (int)f.area.height};

@@ -320,7 +320,8 @@ bool ui_combo(const char *label, int *chosen, const char *choices) {
         else
             items.back() += *c;
     }
-    const char *shown = *chosen >= 0 && *chosen < (int)items.size() ? items[(size_t)*chosen].c_str() : "";
+    const char *shown =
+        *chosen >= 0 && *chosen < (int)items.size() ? items[(size_t)*chosen].c_str() : "";
     bool changed = false;
     if (!ImGui::BeginCombo(label, shown, ImGuiComboFlags_HeightLarge))
         return placed(label, false);
@@ -404,6 +405,10 @@ void ui_width_left(float *width) {
     *width = ImGui::GetContentRegionAvail().x;
 }
 
+float ui_height_left(void) {
+    return ImGui::GetContentRegionAvail().y;
+}
+
 bool ui_table(const char *name, int columns, int widest) {
     if (!ImGui::BeginTable(name, columns, ImGuiTableFlags_RowBg | ImGuiTableFlags_SizingFixedFit))
         return false;
@@ -478,7 +483,8 @@ void ui_draw_text(bool over, float x, float y, uint32_t color, const char *text)
 
 void ui_clip(bool over, window_rect at) {
     list_of(over)->PushClipRect(ImVec2((float)at.x, (float)at.y),
-                                ImVec2((float)(at.x + at.width), (float)(at.y + at.height)));
+                                ImVec2((float)(at.x + at.width), (float)(at.y + at.height)),
+                                !over); // nor out of the panel
 }
 
 void ui_clip_end(bool over) {

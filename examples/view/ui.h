@@ -93,6 +93,7 @@ void ui_space(void);
 void ui_line(void);
 void ui_width(float width);       /* of the next widget; negative: up to that far from the border */
 void ui_width_left(float *width); /* of the panel */
+float ui_height_left(void);
 /* Rows of `columns` cells, each as wide as what it holds but for one, which takes the rest. */
 bool ui_table(const char *name, int columns, int widest);
 void ui_cell(void);

@@ -239,6 +239,8 @@ void player_panel(view *v, window_rect place);
 
 /* The user interface of a frame; says where the picture goes. */
 void panel_draw(view *v);
+/* At its lower end, once something is picked. */
+int panel_picked_height(void);
 /* Its tabs; the list of keys. */
 void panel_scene(view *v);
 void panel_view(view *v);
