@@ -1,5 +1,7 @@
 #include "camera.h"
 
+#include "image_file.h"
+
 #include <cJSON.h>
 #include <errno.h>
 #include <math.h>
@@ -218,15 +220,20 @@ static bool put_cameras(FILE *file, const camera_pose *cameras, uint32_t count) 
 
 bool camera_write_all(const char *path, const camera_pose *cameras, uint32_t count,
                       char error[CAMERA_ERROR_SIZE]) {
+    char *temp = image_temp_create(path, error);
+    if (!temp)
+        return false;
     errno = ENOMEM; /* unless the file has another reason */
-    FILE *file = fopen(path, "w");
+    FILE *file = fopen(temp, "w");
     bool ok = file && put_cameras(file, cameras, count);
     int code = errno;
     if (file && fclose(file) != 0 && ok) {
         ok = false;
         code = errno;
     }
-    return ok || fail(error, path, strerror(code));
+    if (!ok)
+        fail(error, path, strerror(code));
+    return image_temp_finish(temp, path, ok, error);
 }
 
 bool camera_write(const char *path, const camera_pose *camera, char error[CAMERA_ERROR_SIZE]) {

@@ -1,4 +1,4 @@
-/* Private to lineao_image: error texts and files that appear only when complete. */
+/* For the writers of files: error texts, and files that appear only when complete. */
 #ifndef LINEAO_IMAGE_FILE_H
 #define LINEAO_IMAGE_FILE_H
 

@@ -280,6 +280,10 @@ static void files_round_trip(void **state) {
     remove(path);
     assert_false(camera_write("absent/camera.json", &written[0], error));
     assert_memory_equal(error, "absent/camera.json: ", 20);
+    char left[64];
+    snprintf(left, sizeof left, "..%ld-0.tmp", (long)getpid());
+    assert_false(camera_write(".", &written[0], error)); /* a folder: what was begun is gone */
+    assert_int_not_equal(access(left, F_OK), 0);
     assert_false(camera_read(".", &read, error));
     assert_false(camera_read("absent.json", &read, error));
     assert_memory_equal(error, "absent.json: ", 13);
