@@ -423,14 +423,16 @@ static void test_turn(void **state) {
         pixels p;
         snprintf(path, sizeof path, "t%d.png", frame);
         read_pixels(path, &p);
-        size_t w = (size_t)p.width, h = (size_t)p.height, inked = 0;
-        for (size_t i = 0; i < w * h; i++) {
-            bool rim = i % w == 0 || i % w == w - 1 || i < w || i >= w * (h - 1);
-            bool paper = memcmp(p.rgb + 3 * i, p.rgb, 3) == 0;
-            assert_true(paper || !rim);
-            inked += !paper;
+        size_t inked = 0;
+        for (uint32_t y = 0; y < p.height; y++) {
+            for (uint32_t x = 0; x < p.width; x++) {
+                bool rim = x == 0 || y == 0 || x == p.width - 1 || y == p.height - 1;
+                bool paper = memcmp(p.rgb + 3 * ((size_t)y * p.width + x), p.rgb, 3) == 0;
+                assert_true(paper || !rim);
+                inked += !paper;
+            }
         }
-        assert_true(inked > w * h / 40);
+        assert_true(inked > (size_t)p.width * p.height / 40);
         free(p.rgb);
     }
     const char *names[] = {"", "--frames 1 ", "--frames 2 "};
