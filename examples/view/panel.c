@@ -102,6 +102,14 @@ static void keys_dialog(view *v) {
     ui_panel_end();
 }
 
+/* What is opened again says the same again: once is enough. */
+static bool told(char (*texts)[MESSAGE_SIZE], uint32_t i) {
+    bool same = false;
+    for (uint32_t k = 0; k < i && !same; k++)
+        same = strcmp(texts[k], texts[i]) == 0;
+    return same;
+}
+
 /* The last things that were said, until they are closed. Warnings leave the middle free, where the
  * picture is that they are about; busy: their place is taken, they wait. */
 static void said(view *v, bool busy) {
@@ -115,8 +123,10 @@ static void said(view *v, bool busy) {
     if (!shown || (busy && !failed))
         return;
     if (ui_dialog(failed ? "Not done" : "Messages", v->picture, !failed, &open)) {
-        for (uint32_t i = 0; i < shown; i++)
-            (failures[i] ? ui_text_error : ui_text_wrapped)(texts[i]);
+        for (uint32_t i = 0; i < shown; i++) {
+            if (!told(texts, i))
+                (failures[i] ? ui_text_error : ui_text_wrapped)(texts[i]);
+        }
         open = !ui_button("Close") && open;
     }
     ui_panel_end();
