@@ -218,6 +218,10 @@ static bool parse_spacing(const char *text, double spacing[3]) {
     return true;
 }
 
+#define LARGEST_SIDE 32768 /* px of a picture */
+#define TEXT_OF_VALUE(value) #value
+#define TEXT_OF(macro) TEXT_OF_VALUE(macro)
+
 static bool parse_size(const char *text, uint32_t size[2]) {
     char part[16];
     size_t length = strcspn(text, "x");
@@ -226,8 +230,8 @@ static bool parse_size(const char *text, uint32_t size[2]) {
     memcpy(part, text, length);
     part[length] = '\0';
     uint32_t width, height;
-    if (!parse_count(part, &width) || !parse_count(text + length + 1, &height) || width > 32768 ||
-        height > 32768)
+    if (!parse_count(part, &width) || !parse_count(text + length + 1, &height) ||
+        width > LARGEST_SIDE || height > LARGEST_SIDE)
         return false;
     size[0] = width;
     size[1] = height;
@@ -493,7 +497,7 @@ static const char *value_range(flag_type type) {
     case FLAG_COUNT:
         return ", a whole number from 1";
     case FLAG_SIZE:
-        return ", each from 1 to 32768";
+        return ", each from 1 to " TEXT_OF(LARGEST_SIDE);
     case FLAG_LENGTH:
         return ", a number from 0";
     case FLAG_ABOVE:
@@ -639,7 +643,6 @@ static int take_flag(parser *p, int argc, char **argv, int at) {
     return equals ? 1 : 2;
 }
 
-/* What io_write_lines writes. */
 /* A name that promises what is not written. */
 static bool is_other_picture(const char *path) {
     static const char *const names[] = {".jpg", ".jpeg", ".tif", ".tiff", ".bmp", ".webp", ".exr",
@@ -655,6 +658,7 @@ static bool is_other_picture(const char *path) {
     return other;
 }
 
+/* What io_write_lines writes. */
 static bool is_line_name(const char *path) {
     const char *dot = strrchr(path, '.');
     return dot && is_choice("vtp|trk|tck", dot + 1);
